@@ -36,7 +36,7 @@ pub use settings::Settings;
 use crate::configuration::{Configuration, LawParameters};
 use crate::controller::Diagnostics;
 use crate::error::{InputError, ParameterError, Reason as Refused};
-use crate::extended::controller::{Controller, StoppingForecast};
+use crate::extended::controller::{Controller, FlownBy, StoppingForecast};
 use crate::extended::position::FeedbackLimits;
 use crate::extended::rotor_speeds::RotorSpeeds;
 use crate::heading::Heading;
@@ -227,7 +227,11 @@ impl Shield {
         state: &State,
         offers: Option<&Demand>,
     ) -> Result<ShieldStep, InputError> {
-        let prospect = law.stopping_forecast(state, &self.limits);
+        let by = match (&self.pilot, &self.demand) {
+            (InControl::Policy, Some(Demand::Rotors { .. })) => FlownBy::Wrench,
+            _ => FlownBy::Law,
+        };
+        let prospect = law.stopping_forecast(state, &self.limits, by);
         let against = self.judge(state, &prospect, offers);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {

@@ -108,11 +108,10 @@ class Rotors:
         positions = np.asarray(given["position"], float)
         order = [int(np.flatnonzero((positions[:, :2] * quarter > 0.0).all(axis=1))[0]) for quarter in self.QUARTERS]
         positions = positions[order]
-        yaw = np.array([1.0 if given["spin"][number] == "cw" else -1.0 for number in order])
-        yaw *= (np.asarray(given["drag_coefficient"], float) / np.asarray(given["thrust_coefficient"], float))
-        self.columns = np.stack([np.ones(4), positions[:, 1], -positions[:, 0], yaw])
-        ranges = sh.certify(scenario).rotors[order]
-        self.least, self.greatest = np.sqrt(ranges[:, 0]), np.sqrt(ranges[:, 1])
+        per_thrust = (given["drag_coefficient"] / given["thrust_coefficient"])[order]
+        self.columns = np.stack([np.ones(4), positions[:, 1], -positions[:, 0], given["spin"][order] * per_thrust])
+        # The roots of the least and the greatest thrust, sqrt(N).
+        self.least, self.greatest = (given["speed"][order] * np.sqrt(given["thrust_coefficient"])[order, None]).T
 
     def wrenches(self, speeds):
         """Wrenches (n, 4) of speeds (n, 4); what is beyond -1 and 1 is cut, and what rounding takes over the end."""

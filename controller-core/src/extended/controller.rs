@@ -337,7 +337,7 @@ mod forecast;
 mod sections;
 mod without_a_rotor;
 
-pub use forecast::StoppingForecast;
+pub use forecast::{FlownBy, StoppingForecast};
 
 #[cfg(test)]
 mod tests;

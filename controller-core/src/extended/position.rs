@@ -255,12 +255,24 @@ impl PositionLaw {
     }
 
     /// A demand cut to the envelope: the vertical first, then what it leaves across.
-    pub fn within(&self, wanted: &Vector3<f32>, max: f32) -> Vector3<f32> {
+    fn within(&self, wanted: &Vector3<f32>, max: f32) -> Vector3<f32> {
         let vertical = math::max(math::min(wanted.z, max - self.gravity), -self.a_down);
         let reach = math::max(self.reach(self.gravity + vertical, max), 0.0);
         let length = math::sqrt(wanted.xy().norm_squared());
         let share = if length > reach { reach / length } else { 1.0 };
         Vector3::new(wanted.x * share, wanted.y * share, vertical)
+    }
+
+    /// The filters' states where the law has commanded `wanted`, m/s^2, for long, changing it by `rate`, m/s^3: each cut
+    /// to the envelope.
+    pub fn filters_at(&self, wanted: &Vector3<f32>, rate: &Vector3<f32>, max: f32) -> Filters {
+        let [of_command, of_intermediate, _] = self.lags;
+        let ahead = |time: f32| self.within(&(wanted + rate * time), max);
+        Filters {
+            command: ahead(0.0),
+            intermediate: ahead(of_command),
+            smoothed: ahead(of_command + of_intermediate),
+        }
     }
 
     /// c', m/s^3.

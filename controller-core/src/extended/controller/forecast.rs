@@ -21,6 +21,16 @@ use nalgebra::Vector3;
 /// The part of the torque that feedback is taken to use while the frame turns.
 const FEEDBACK_SHARE: f32 = 0.5;
 
+/// What has flown the vehicle so far, which says where its thrust points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FlownBy {
+    /// The law, or a demand to it: thrust points near its command, and turns with it.
+    Law,
+    /// A wrench in the law's place: thrust points where the vehicle does, and turns as that does. The law's command is
+    /// that direction cut to the envelope, which may be far from it.
+    Wrench,
+}
+
 /// What is ahead of a vehicle. World frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoppingForecast {
@@ -39,7 +49,7 @@ pub struct StoppingForecast {
 
 impl Controller {
     /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
-    pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits) -> StoppingForecast {
+    pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits, by: FlownBy) -> StoppingForecast {
         let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;
         let max = self.ceiling.at(scale, &torque);
@@ -51,7 +61,16 @@ impl Controller {
         command.z += self.vehicle.gravity;
         let magnitude = math::sqrt(command.norm_squared());
 
-        let reaction = self.reaction(&z_2, &command, &force, max, most);
+        let axis = thrust_axis(&state.attitude);
+        let (pointing, turns) = match by {
+            // First it comes to rest, then it turns from rest to rest.
+            FlownBy::Law => {
+                let moving = self.position.rate(filters);
+                (command, math::sqrt(moving.cross(&command).norm_squared()) / command.norm_squared())
+            }
+            FlownBy::Wrench => (axis, math::sqrt(state.angular_velocity.xy().norm_squared())),
+        };
+        let reaction = self.reaction(&z_2, (&pointing, turns), &force, max, most);
         let went_on = z_1 + z_2 * reaction;
         let sped_up = acceleration * reaction;
         let push_velocity = self.pushed(&command, max);
@@ -70,7 +89,7 @@ impl Controller {
                 stop(went_on, z_2),
                 stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up + push_velocity),
             ],
-            alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
+            alignment: axis.dot(&command) / magnitude,
             doubtful: self.memory.held > 0
                 || self.memory.without_velocity > 0
                 || self.spinning.is_some()
@@ -87,26 +106,24 @@ impl Controller {
         Vector3::new(command.x * speed, command.y * speed, 0.0)
     }
 
-    /// How much longer than the filters the thrust direction takes from where it points to where stopping has it, s.
+    /// How much longer than the filters the thrust direction takes from where it is `pointing`, in a turn of so many
+    /// rad/s, to where stopping has it, s.
     fn reaction(
         &self,
         z_2: &Vector3<f32>,
-        command: &Vector3<f32>,
+        (pointing, turns): (&Vector3<f32>, f32),
         force: &Vector3<f32>,
         max: f32,
         most: &FeedbackLimits,
     ) -> f32 {
         let mut stopping = self.position.stopping(z_2, force, max, most);
         stopping.z += self.vehicle.gravity;
-        let angle = angle(command, &stopping);
+        let angle = angle(pointing, &stopping);
         let parameters = &self.law.parameters;
         let left = (1.0 - FEEDBACK_SHARE) * self.budget.radius(self.thrust_scale());
         let inertia = math::max(self.vehicle.inertia.x, self.vehicle.inertia.y);
         let acceleration = math::max(left / inertia, parameters.turn_reserve);
         let rate = parameters.turn_rate;
-        // First it comes to rest, then it turns from rest to rest.
-        let moving = self.position.rate(&self.memory.filters);
-        let turns = math::sqrt(moving.cross(command).norm_squared()) / command.norm_squared();
         let stops = turns / acceleration;
         let angle = angle + 0.5 * turns * stops;
         let turning = if angle * acceleration > rate * rate {

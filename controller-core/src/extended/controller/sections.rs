@@ -105,8 +105,7 @@ impl Controller {
     }
 
     /// c, x and y as the law would have them if it had commanded the acceleration that `wrench` makes, and the rate at
-    /// which the vehicle turns it across: c at that acceleration, x where c' = k_f (x - c) is that rate, y at x, each
-    /// cut to the envelope.
+    /// which the vehicle turns that across.
     pub(super) fn filters_beside(
         &self,
         state: &State,
@@ -114,16 +113,10 @@ impl Controller {
         wrench: &Wrench,
         acceleration_max: f32,
     ) -> Filters {
-        let law = self.position_law();
-        let push = axis * (wrench.thrust / self.vehicle.mass);
-        let mut wanted = push;
+        let mut wanted = axis * (wrench.thrust / self.vehicle.mass);
+        let turning = rotate_back(&state.attitude.conjugate(), &state.angular_velocity).cross(&wanted);
         wanted.z -= self.vehicle.gravity;
-        let command = law.within(&wanted, acceleration_max);
-        // The world's rates, of which the part along the axis turns nothing.
-        let rates = rotate_back(&state.attitude.conjugate(), &state.angular_velocity);
-        let turning = rates.cross(&push) * (1.0 / law.k_f());
-        let intermediate = law.within(&(wanted + Vector3::new(turning.x, turning.y, 0.0)), acceleration_max);
-        Filters { command, intermediate, smoothed: intermediate }
+        self.position_law().filters_at(&wanted, &Vector3::new(turning.x, turning.y, 0.0), acceleration_max)
     }
 
     /// Section 3: where u points, and how it would turn.

@@ -4,6 +4,7 @@ extern crate std;
 use super::*;
 use crate::allocation::{MinimumNorm, QuadX};
 use crate::extended::tests::Random;
+use crate::vehicle::{LimitParameters, Vehicle, VehicleParameters};
 use std::vec::Vec;
 
 const QUAD: QuadX =
@@ -14,7 +15,8 @@ fn rotors() -> Rotors {
 }
 
 fn limits(thrust_max: f32, torque_max: [f32; 3]) -> Limits {
-    Limits { thrust_max, torque_max: torque_max.into() }
+    let vehicle = Vehicle::new(VehicleParameters { mass: 0.01, inertia: Vector3::repeat(1e-3), gravity: 9.81 }).unwrap();
+    Limits::new(LimitParameters { thrust_max, torque_max: torque_max.into() }, &vehicle).unwrap()
 }
 
 const WIDE: ([f32; 3], f32) = ([100.0; 3], 100.0);

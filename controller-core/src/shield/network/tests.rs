@@ -4,7 +4,7 @@ extern crate std;
 use super::*;
 use crate::extended::tests::Random;
 use crate::state::State;
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 use std::vec::Vec;
 
 fn observation(random: &mut Random) -> Observation {
