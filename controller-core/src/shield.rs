@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! policy -> Demand -> Shield { Monitor } -+- step_on_demand -> Wrench     while the policy may fly
-//!                                         +- step_on_wrench -> Wrench     the same, where it demands rotor speeds
+//!                                         +- step_on_rotors -> Wrench     the same, where it demands rotor speeds
 //!                                         '- step_within    -> Wrench     at rest at a refuge, otherwise
 //! ```
 //!
@@ -228,7 +228,7 @@ impl Shield {
         offers: Option<&Demand>,
     ) -> Result<ShieldStep, InputError> {
         let by = match (&self.pilot, &self.demand) {
-            (InControl::Policy, Some(Demand::Rotors { .. })) => FlownBy::Wrench,
+            (InControl::Policy, Some(Demand::Rotors { .. })) => FlownBy::Rotors,
             _ => FlownBy::Law,
         };
         let prospect = law.stopping_forecast(state, &self.limits, by);
@@ -240,7 +240,7 @@ impl Shield {
                 let reference = Reference::resting(self.refuge(&prospect), *self.heading.heading());
                 let (wrench, diagnostics) = match (demand, &self.rotors) {
                     (Demand::Rotors { speeds }, Some(rotors)) => {
-                        law.step_on_wrench(state, &reference, &rotors.wrench(speeds, law.thrust_scale()))?
+                        law.step_on_rotors(state, &reference, rotors, speeds)?
                     }
                     _ => law.step_on_demand(state, &reference, demand)?,
                 };

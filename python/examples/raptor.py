@@ -294,11 +294,14 @@ def scenario_has_drag(file):
     return "[drag]" in (TOP / file).read_text()
 
 
-def fly(scenario, pilot, states, goals, seed, **options):
-    """Flies every row to the end: numbers by name."""
+def fly(scenario, pilot, states, goals, seed, vehicles=None, **options):
+    """Flies every row to the end, of our simulator's vehicles or of other `vehicles`: numbers by name."""
     rows, box = len(states), (LOW + MARGIN, HIGH - MARGIN)
-    vehicles = sh.VehicleRows(scenario, rows)
-    vehicles.place(states, None, list(range(seed, seed + rows)))
+    if vehicles is None:
+        vehicles = sh.VehicleRows(scenario, rows)
+        vehicles.place(states, None, list(range(seed, seed + rows)))
+    else:
+        vehicles.place(states)
     pilot = pilot(scenario, sh.Network.read(str(POLICY)), states, goals, box, **options)
     alive, out = np.ones(rows, bool), np.zeros(rows)
     flown, by_policy, beyond = np.zeros(rows), np.zeros(rows), np.zeros(rows)

@@ -9,7 +9,7 @@
 //! comes out as late as the law's own feedback does, and within the same limits.
 //!
 //! Speeds of the rotors are the third kind. They take the place of the wrench itself: [`super::rotor_speeds`] makes
-//! one of them, and [`Controller::step_on_wrench`](super::controller::Controller::step_on_wrench) flies it.
+//! one of them, and [`Controller::step_on_rotors`](super::controller::Controller::step_on_rotors) flies it.
 
 use crate::error::InputError;
 use crate::reference::DERIVATIVE_RANGE;

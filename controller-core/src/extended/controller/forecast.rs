@@ -26,9 +26,9 @@ const FEEDBACK_SHARE: f32 = 0.5;
 pub enum FlownBy {
     /// The law, or a demand to it: thrust points near its command, and turns with it.
     Law,
-    /// A wrench in the law's place: thrust points where the vehicle does, and turns as that does. The law's command is
+    /// Rotor speeds in the law's place: thrust points where the vehicle does, and turns as that does. The law's command is
     /// that direction cut to the envelope, which may be far from it.
-    Wrench,
+    Rotors,
 }
 
 /// What is ahead of a vehicle. World frame.
@@ -68,7 +68,7 @@ impl Controller {
                 let moving = self.position.rate(filters);
                 (command, math::sqrt(moving.cross(&command).norm_squared()) / command.norm_squared())
             }
-            FlownBy::Wrench => (axis, math::sqrt(state.angular_velocity.xy().norm_squared())),
+            FlownBy::Rotors => (axis, math::sqrt(state.angular_velocity.xy().norm_squared())),
         };
         let reaction = self.reaction(&z_2, (&pointing, turns), &force, max, most);
         let went_on = z_1 + z_2 * reaction;

@@ -98,7 +98,7 @@ impl Controller {
                 let feedback = self.demanded_feedback(state, demand, force);
                 law.feedback_on_demand(state, reference, filters, force, acceleration_max, &feedback)
             }
-            FeedbackSource::Wrench(_) => {
+            FeedbackSource::Rotors(..) => {
                 law.feedback_on_demand(state, reference, filters, force, acceleration_max, &filters.smoothed)
             }
         }

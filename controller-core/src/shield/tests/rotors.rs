@@ -28,7 +28,27 @@ fn speeds_fly_as_they_are_cut_to_the_rotors_and_are_what_flew_last() {
     let climb = Demand::Rotors { speeds: [9.0; 4] };
     assert!((shield.step(&mut law, &resting(MIDDLE), Some(&climb)).unwrap().wrench.thrust - 40.0).abs() < 1e-4);
     let roll = Demand::Rotors { speeds: [-0.4, -0.4, -0.5, -0.5] };
-    assert!(shield.step(&mut law, &resting(MIDDLE), Some(&roll)).unwrap().wrench.torque.x < -0.1);
+    assert!(shield.step(&mut law, &resting(MIDDLE), Some(&roll)).unwrap().wrench.torque.x < -0.05);
+}
+
+/// The thrust scale that the caller divides by is the one of after the tick: full speeds stay within the ranges while
+/// it is learnt.
+#[test]
+fn no_rotor_leaves_its_range_while_the_thrust_scale_is_learnt() {
+    let (mut law, mut shield) = shielded(&settings());
+    let (mixer, mut random) = (MinimumNorm::new(&example::rotors()), Random(122));
+    let mut scales = std::vec::Vec::new();
+    for tick in 0..400 {
+        // Velocities that no command explains move the estimate.
+        let state = State { velocity: Vector3::new(0.0, 0.0, 2.0 * random.signed()), ..resting(MIDDLE) };
+        shield.reset(&Heading::FORWARD);
+        let speeds = core::array::from_fn(|_| if tick % 3 == 0 { 1.0 } else { random.signed() });
+        let flown = shield.step(&mut law, &state, Some(&Demand::Rotors { speeds })).unwrap();
+        let allocated = mixer.allocate(&flown.wrench.scaled(1.0 / law.thrust_scale())).unwrap();
+        assert!(flown.reason.is_some() || !allocated.clipped, "{tick} {speeds:?}");
+        scales.push(law.thrust_scale());
+    }
+    assert!(scales.iter().copied().fold(0.0, f32::max) - scales.iter().copied().fold(9.0, f32::min) > 0.05);
 }
 
 /// While the law flies, a policy sees what the law told the rotors.
