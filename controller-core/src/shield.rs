@@ -227,12 +227,16 @@ impl Shield {
         state: &State,
         offers: Option<&Demand>,
     ) -> Result<ShieldStep, InputError> {
-        let by = match (&self.pilot, &self.demand) {
-            (InControl::Policy, Some(Demand::Rotors { .. })) => FlownBy::Rotors,
+        let usable = self.listen(offers);
+        // A demand of speeds is judged by what it would do from now on.
+        let by = match (&self.pilot, &self.demand, &self.rotors) {
+            (InControl::Policy, Some(Demand::Rotors { speeds }), Some(rotors)) => {
+                FlownBy::Rotors(rotors.wrench(speeds, law.thrust_scale()))
+            }
             _ => FlownBy::Law,
         };
         let prospect = law.stopping_forecast(state, &self.limits, by);
-        let against = self.judge(state, &prospect, offers);
+        let against = self.judge(state, &prospect, usable);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {
             (InControl::Policy, Some(demand)) => {
@@ -260,17 +264,22 @@ impl Shield {
         }
     }
 
-    /// What speaks against the policy in this tick.
-    fn judge(&mut self, state: &State, prospect: &StoppingForecast, offers: Option<&Demand>) -> Option<Reason> {
-        let flies = |demand: &Demand| self.rotors.is_some() || !matches!(demand, Demand::Rotors { .. });
-        let usable = offers.map(|demand| demand.check().ok().filter(|()| flies(demand)).map(|()| *demand));
+    /// Takes up what the policy offers: whether it can be used; none where it says nothing.
+    fn listen(&mut self, offers: Option<&Demand>) -> Option<bool> {
+        let flies = |demand: &&Demand| self.rotors.is_some() || !matches!(demand, Demand::Rotors { .. });
+        let usable = offers.filter(|demand| demand.check().is_ok()).filter(flies);
         match usable {
-            Some(Some(demand)) => (self.demand, self.silent) = (Some(demand), 0),
-            _ => self.silent = self.silent.saturating_add(1),
+            Some(demand) => (self.demand, self.silent) = (Some(*demand), 0),
+            None => self.silent = self.silent.saturating_add(1),
         }
+        offers.map(|_| usable.is_some())
+    }
+
+    /// What speaks against the policy in this tick.
+    fn judge(&mut self, state: &State, prospect: &StoppingForecast, usable: Option<bool>) -> Option<Reason> {
         self.doubtful = if prospect.doubtful { self.doubtful.saturating_add(1) } else { 0 };
         let seconds = |ticks: u32| ticks as f32 * self.period;
-        if matches!(usable, Some(None)) {
+        if usable == Some(false) {
             return Some(Reason::Demand);
         }
         if self.demand.is_none() || seconds(self.silent) > self.settings.silence {

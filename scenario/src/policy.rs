@@ -92,10 +92,9 @@ impl AffineNumbers {
         }
         let width = rows.first().map_or(0, Vec::len);
         match rows.iter().position(|row| row.len() != width) {
-            Some(other) => Err(format!(
-                "{field}[{other}]: must have {width} numbers as the others, found {}",
-                rows[other].len()
-            )),
+            Some(other) => {
+                Err(format!("{field}[{other}]: must have {width} numbers as the others, found {}", rows[other].len()))
+            }
             None => Ok(Self { weights: rows.concat(), biases: numbers_of }),
         }
     }
@@ -279,22 +278,13 @@ mod tests {
             (good.replace("farthest = 1", "farthest = 0"), "farthest: must be a number above zero"),
             (good.replace("fastest = 2.5", ""), "fastest: must be a number above zero"),
             (good.replace("fastest = 2.5", "fastest = 2e4"), "network.fastest: must be at most 10000"),
-            (
-                good.replace("fastest", "scale"),
-                "scale: unknown; there are demands and farthest and fastest and layers",
-            ),
+            (good.replace("fastest", "scale"), "scale: unknown; there are demands and farthest and fastest and layers"),
             (
                 good.replace("\"identity\"", "\"elu\""),
                 "layers[1].activation: must be tanh or relu or identity, found \"elu\"",
             ),
-            (
-                good.replace(&rows(6, 2), &rows(6, 3)),
-                "network.layers.hidden_weights: takes at most 12 elements",
-            ),
-            (
-                good.replace(&rows(6, 22), &rows(6, 21)),
-                "network.layers.input_weights: needs at least 132 elements",
-            ),
+            (good.replace(&rows(6, 2), &rows(6, 3)), "network.layers.hidden_weights: takes at most 12 elements"),
+            (good.replace(&rows(6, 22), &rows(6, 21)), "network.layers.input_weights: needs at least 132 elements"),
             (
                 good.replacen("kind", "initial = [0.5]\nkind", 1),
                 "network.layers.input_biases: takes at most 3 elements",
@@ -325,7 +315,10 @@ mod tests {
                 "policy.toml: layers[0].biases[0]: must be a finite number of single precision",
             ),
             (good.replace("4.0, 1.0]", "4.0]"), "policy.toml: scale: must have 4 numbers, found 3"),
-            (good.replace("biases", "bias"), "policy.toml: layers[0].bias: unknown; there are weights and biases and activation and kind"),
+            (
+                good.replace("biases", "bias"),
+                "policy.toml: layers[0].bias: unknown; there are weights and biases and activation and kind",
+            ),
             ("scale = [1, 1, 1, 1]".to_owned(), "policy.toml: layers: missing; write [[layers]]"),
             (
                 good.replacen("0.5, ", "", 1),

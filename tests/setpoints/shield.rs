@@ -107,8 +107,7 @@ const POLICY_KINDS: [Kind; 8] = [
     Kind::Silent,
 ];
 
-const ROTOR_KINDS: [Kind; 5] =
-    [Kind::RotorNoise, Kind::Flipping, Kind::Falling, Kind::Climbing, Kind::Twisting];
+const ROTOR_KINDS: [Kind; 5] = [Kind::RotorNoise, Kind::Flipping, Kind::Falling, Kind::Climbing, Kind::Twisting];
 
 struct Malicious {
     kind: Kind,
@@ -248,12 +247,7 @@ fn fly(scenario: &Scenario, kind: Kind, rng: &mut ChaCha8Rng, shielded: bool, sh
 }
 
 /// Flights of each of these policies on each vehicle in each wind.
-fn campaign(
-    kinds: &[Kind],
-    each: u32,
-    shielded: bool,
-    mut rng: ChaCha8Rng,
-) -> Vec<(&'static str, Air, Kind, Shown)> {
+fn campaign(kinds: &[Kind], each: u32, shielded: bool, mut rng: ChaCha8Rng) -> Vec<(&'static str, Air, Kind, Shown)> {
     let mut all = Vec::new();
     for (name, airs) in VEHICLES {
         for air in airs {

@@ -190,9 +190,9 @@ impl Controller {
 
     /// One tick in which the rotors turn at `speeds`, in the law's place: their wrench, within ranges and limits, is
     /// what comes back, unless a rotor is lost. The law goes through its tick beside it: it learns from what flew, and
-    /// its filters are put where the acceleration by this thrust is, with the rate at which the vehicle turns it, both
-    /// cut to the envelope. So the law can take over at any tick from a memory that its own flights could have. The
-    /// reference as for a demand.
+    /// its filters are put where the thrust points, with the rate at which the vehicle turns it and the lift that holds
+    /// the height, all cut to the envelope. So the law can take over at any tick from a memory that its own flights
+    /// could have. The reference as for a demand.
     ///
     /// # Errors
     /// As [`Self::step`]'s.
@@ -265,7 +265,7 @@ impl Controller {
             _ => None,
         };
         let filters = match &turned {
-            Some(wrench) => self.filters_beside(state, &axis, wrench, acceleration_max),
+            Some(_) => self.filters_beside(state, &axis, &force, acceleration_max),
             None => self.memory.filters,
         };
         let feedback = self.feedback(state, reference, &filters, &force, acceleration_max, source);

@@ -268,11 +268,7 @@ impl PositionLaw {
     pub fn filters_at(&self, wanted: &Vector3<f32>, rate: &Vector3<f32>, max: f32) -> Filters {
         let [of_command, of_intermediate, _] = self.lags;
         let ahead = |time: f32| self.within(&(wanted + rate * time), max);
-        Filters {
-            command: ahead(0.0),
-            intermediate: ahead(of_command),
-            smoothed: ahead(of_command + of_intermediate),
-        }
+        Filters { command: ahead(0.0), intermediate: ahead(of_command), smoothed: ahead(of_command + of_intermediate) }
     }
 
     /// c', m/s^3.

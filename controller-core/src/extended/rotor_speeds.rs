@@ -61,7 +61,9 @@ impl RotorSpeeds {
         let first = rotors.first().filter(|_| rotors.len() == PLACES.len())?;
         let like = |a: f32, b: f32| (a - b).abs() <= LIKE_RANGE_TOLERANCE * first.thrust_max;
         let even = |row: &Vector4<f64>| (row.x - 0.25).abs() <= EVEN_SHARE_TOLERANCE;
-        if !rotors.iter().all(|rotor| like(rotor.thrust_min, first.thrust_min) && like(rotor.thrust_max, first.thrust_max))
+        if !rotors
+            .iter()
+            .all(|rotor| like(rotor.thrust_min, first.thrust_min) && like(rotor.thrust_max, first.thrust_max))
             || !rotors.pseudo_inverse().iter().all(even)
         {
             return None;
@@ -108,9 +110,10 @@ impl RotorSpeeds {
             wrench.x += (1.0 - share) * least;
         }
         let torque = Vector3::new(wrench.y, wrench.z, wrench.w);
-        let share = torque.iter().zip(self.torque_max.iter()).fold(1.0, |share, (torque, max)| {
-            if torque.abs() * share > *max { max / torque.abs() } else { share }
-        });
+        let share = torque
+            .iter()
+            .zip(self.torque_max.iter())
+            .fold(1.0, |share, (torque, max)| if torque.abs() * share > *max { max / torque.abs() } else { share });
         Wrench { thrust: wrench.x, torque: torque * share }
     }
 

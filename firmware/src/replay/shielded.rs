@@ -37,11 +37,8 @@ static FIRST_WEIGHTS: [f32; INPUT_COUNT * HIDDEN_OUTPUTS] = weights();
 static SECOND_WEIGHTS: [f32; HIDDEN_OUTPUTS * HIDDEN_OUTPUTS] = weights();
 static THIRD_WEIGHTS: [f32; HIDDEN_OUTPUTS * OUTPUT_COUNT] = weights();
 static BIASES: [f32; HIDDEN_OUTPUTS] = weights();
-static LAYERS: [Layer<'static>; 3] = [
-    dense(&FIRST_WEIGHTS, &BIASES),
-    dense(&SECOND_WEIGHTS, &BIASES),
-    dense(&THIRD_WEIGHTS, &[0.1, -0.1, 0.05, -0.05]),
-];
+static LAYERS: [Layer<'static>; 3] =
+    [dense(&FIRST_WEIGHTS, &BIASES), dense(&SECOND_WEIGHTS, &BIASES), dense(&THIRD_WEIGHTS, &[0.1, -0.1, 0.05, -0.05])];
 
 const fn dense(weights: &'static [f32], biases: &'static [f32]) -> Layer<'static> {
     Layer::Dense { affine: Affine { weights, biases }, activation: Activation::Tanh }

@@ -15,20 +15,20 @@ use crate::extended::position::FeedbackLimits;
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::Reference;
-use crate::state::State;
+use crate::state::{State, Wrench};
 use nalgebra::Vector3;
 
 /// The part of the torque that feedback is taken to use while the frame turns.
 const FEEDBACK_SHARE: f32 = 0.5;
 
 /// What has flown the vehicle so far, which says where its thrust points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FlownBy {
     /// The law, or a demand to it: thrust points near its command, and turns with it.
     Law,
-    /// Rotor speeds in the law's place: thrust points where the vehicle does, and turns as that does. The law's command is
-    /// that direction cut to the envelope, which may be far from it.
-    Rotors,
+    /// Rotor speeds in the law's place, by this wrench from now on: thrust points where the vehicle does, and turns as
+    /// that does. The law's command is that direction cut to the envelope, which may be far from it.
+    Rotors(Wrench),
 }
 
 /// What is ahead of a vehicle. World frame.
@@ -62,17 +62,27 @@ impl Controller {
         let magnitude = math::sqrt(command.norm_squared());
 
         let axis = thrust_axis(&state.attitude);
-        let (pointing, turns) = match by {
-            // First it comes to rest, then it turns from rest to rest.
+        // First it comes to rest, then it turns from rest to rest.
+        let (pointing, turns) = match &by {
             FlownBy::Law => {
                 let moving = self.position.rate(filters);
                 (command, math::sqrt(moving.cross(&command).norm_squared()) / command.norm_squared())
             }
-            FlownBy::Rotors => (axis, math::sqrt(state.angular_velocity.xy().norm_squared())),
+            FlownBy::Rotors(wrench) => {
+                let sped_up = wrench.torque.xy().component_div(&self.vehicle.inertia.xy()) * self.acting();
+                (axis, math::sqrt((state.angular_velocity.xy() + sped_up).norm_squared()))
+            }
         };
         let reaction = self.reaction(&z_2, (&pointing, turns), &force, max, most);
         let went_on = z_1 + z_2 * reaction;
-        let sped_up = acceleration * reaction;
+        let sped_up = match &by {
+            FlownBy::Law => acceleration * reaction,
+            // What it pushes beyond the law's own command, for as long as it acts; and that for as long as turning takes.
+            FlownBy::Rotors(wrench) => {
+                let push = axis * (wrench.thrust / self.vehicle.mass) - command;
+                push * self.acting() + acceleration * reaction
+            }
+        };
         let push_velocity = self.pushed(&command, max);
         let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
             let levels = self.position.stopping_levels(&speed, &force, max, most);
@@ -96,6 +106,11 @@ impl Controller {
                 || self.is_at_a_level()
                 || !self.is_held(&force, max),
         }
+    }
+
+    /// For how long a wrench acts beyond the tick that ends it, and in that tick, s.
+    fn acting(&self) -> f32 {
+        self.late + self.period
     }
 
     /// The velocity that thrust makes across while the thrust direction lags, m/s: section 1's n* beside n.
@@ -132,7 +147,7 @@ impl Controller {
             2.0 * math::sqrt(angle / acceleration)
         };
         let turning = stops + turning;
-        math::max(turning - self.position.lag(), 0.0) + self.late + self.period
+        math::max(turning - self.position.lag(), 0.0) + self.acting()
     }
 
     /// Whether the thrust holds all of the force.

@@ -15,7 +15,8 @@ fn rotors() -> Rotors {
 }
 
 fn limits(thrust_max: f32, torque_max: [f32; 3]) -> Limits {
-    let vehicle = Vehicle::new(VehicleParameters { mass: 0.01, inertia: Vector3::repeat(1e-3), gravity: 9.81 }).unwrap();
+    let vehicle =
+        Vehicle::new(VehicleParameters { mass: 0.01, inertia: Vector3::repeat(1e-3), gravity: 9.81 }).unwrap();
     Limits::new(LimitParameters { thrust_max, torque_max: torque_max.into() }, &vehicle).unwrap()
 }
 
@@ -52,7 +53,8 @@ fn no_demand_takes_a_rotor_out_of_its_range_or_a_wrench_over_a_limit() {
     let mixer = MinimumNorm::new(&rotors);
     let mut random = Random(102);
     for _ in 0..20_000 {
-        let torque_max = [random.logarithmic(0.01, 10.0), random.logarithmic(0.01, 10.0), random.logarithmic(0.01, 10.0)];
+        let torque_max =
+            [random.logarithmic(0.01, 10.0), random.logarithmic(0.01, 10.0), random.logarithmic(0.01, 10.0)];
         let limits = limits(random.logarithmic(5.0, 100.0), torque_max);
         let x = RotorSpeeds::new(&rotors, &limits).unwrap();
         let speeds = core::array::from_fn(|_| match random.below(6) {
@@ -83,7 +85,8 @@ fn rotors_that_are_no_x_fly_no_speeds() {
         thrust_max,
     };
     let (cw, ccw) = (Spin::Clockwise, Spin::CounterClockwise);
-    let good = [rotor(0.1, 0.1, cw, 5.0), rotor(0.1, -0.1, ccw, 5.0), rotor(-0.1, -0.1, cw, 5.0), rotor(-0.1, 0.1, ccw, 5.0)];
+    let good =
+        [rotor(0.1, 0.1, cw, 5.0), rotor(0.1, -0.1, ccw, 5.0), rotor(-0.1, -0.1, cw, 5.0), rotor(-0.1, 0.1, ccw, 5.0)];
     let flies = |list: &[Rotor]| RotorSpeeds::new(&Rotors::new(list).unwrap(), &limits(WIDE.1, WIDE.0)).is_some();
     assert!(flies(&good));
     let [first, second, third, fourth] = good;
@@ -94,7 +97,12 @@ fn rotors_that_are_no_x_fly_no_speeds() {
     assert!(!flies(&turned));
     assert!(!flies(&[rotor(0.1, 0.1, cw, 5.1), second, third, fourth]));
     assert!(!flies(&[rotor(0.13, 0.1, cw, 5.0), second, third, fourth]));
-    assert!(!flies(&[rotor(0.1, 0.0, cw, 5.0), rotor(0.0, 0.1, ccw, 5.0), rotor(-0.1, 0.0, cw, 5.0), rotor(0.0, -0.1, ccw, 5.0)]));
+    assert!(!flies(&[
+        rotor(0.1, 0.0, cw, 5.0),
+        rotor(0.0, 0.1, ccw, 5.0),
+        rotor(-0.1, 0.0, cw, 5.0),
+        rotor(0.0, -0.1, ccw, 5.0)
+    ]));
     let six = [first, second, third, fourth, rotor(0.2, 0.0, cw, 5.0), rotor(-0.2, 0.0, ccw, 5.0)];
     assert!(!flies(&six));
 }

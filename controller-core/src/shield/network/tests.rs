@@ -118,9 +118,8 @@ fn what_is_not_finite_goes_through_once_and_is_forgotten() {
 #[test]
 fn a_network_that_does_not_fit_is_refused_by_name() {
     let (weights, biases) = ([0.5; INPUT_COUNT * WIDTH_MAX * 2], [0.5; WIDTH_MAX + 1]);
-    let layer = |inputs: usize, outputs: usize| {
-        dense(weights.get(..inputs * outputs).unwrap(), biases.get(..outputs).unwrap())
-    };
+    let layer =
+        |inputs: usize, outputs: usize| dense(weights.get(..inputs * outputs).unwrap(), biases.get(..outputs).unwrap());
     let good = layer(INPUT_COUNT, OUTPUT_COUNT);
     let nan = [f32::NAN; OUTPUT_COUNT];
     for (layers, scale, field) in [
@@ -331,8 +330,8 @@ fn a_recurrent_layer_that_does_not_fit_is_refused_by_name() {
         assert_eq!(refused(&good, interface), field);
     }
     // 40 and 40 values are more than a policy remembers.
-    let [wide, own, narrow] = [(INPUT_COUNT, 120), (40, 120), (40, 4)]
-        .map(|(inputs, outputs)| Numbers::drawn(&mut random, inputs, outputs));
+    let [wide, own, narrow] =
+        [(INPUT_COUNT, 120), (40, 120), (40, 4)].map(|(inputs, outputs)| Numbers::drawn(&mut random, inputs, outputs));
     let again = Numbers::drawn(&mut random, 40, 120);
     let initial = [0.0; 40];
     let layers = [

@@ -125,20 +125,20 @@ fn the_memory_beside_speeds_is_one_that_the_laws_own_flights_could_have() {
     assert!(flown > 500, "{flown}");
 }
 
-/// At a hand-over the law starts from where the thrust points: its thrust is the one that flew, within what the
-/// envelope has, and its frame turns as the vehicle does.
+/// At a hand-over the law starts from where the thrust points, its frame turning as the vehicle does, with the lift
+/// that holds the height: whatever thrust flew before is gone at once.
 #[test]
 fn the_law_takes_over_from_where_the_thrust_points() {
     let (mut law, mut shield) = shielded(&settings());
     let tilted = Quaternion::new(0.2_f32.cos(), 0.2_f32.sin(), 0.0, 0.0);
     let state = State { attitude: tilted, angular_velocity: Vector3::new(0.5, 0.0, 0.0), ..resting(MIDDLE) };
-    let flown = shield.step(&mut law, &state, Some(&HOVERING)).unwrap();
+    let flown = shield.step(&mut law, &state, Some(&Demand::Rotors { speeds: [0.3; 4] })).unwrap();
     let taken = shield.step(&mut law, &state, Some(&NONSENSE)).unwrap();
     assert_eq!((flown.reason, taken.reason), (None, Some(Reason::Demand)));
     let axis = Vector3::new(0.0, -0.4_f32.sin(), 0.4_f32.cos());
     let command = taken.diagnostics.acceleration_command;
     assert!((command.normalize() - axis).norm() < 0.02, "{command:?}");
-    assert!((command.norm() * example::vehicle().mass / flown.wrench.thrust - 1.0).abs() < 0.02);
+    assert!(flown.wrench.thrust > 20.0 && taken.wrench.thrust < 7.0, "{} {}", flown.wrench.thrust, taken.wrench.thrust);
     let rate = taken.diagnostics.desired_angular_velocity;
     assert!((rate.x - 0.5).abs() < 0.1 && rate.y.abs() < 0.05, "{rate:?}");
 }
