@@ -17,6 +17,9 @@ use std::{env, fs};
 /// whole sample of delay, certified to the rotors.
 const STUDY_SCENARIO: &str = "vehicles/study.toml";
 
+/// A network that remembers: its bits and its cost are measured.
+const RECURRENT_POLICY: &str = "vehicles/policies/raptor.toml";
+
 /// Boards and the files that describe their memory, from this package's folder.
 const MEMORY_FILES: &[(&str, &str)] = &[
     ("MICOAIR_H743", "memory/stm32h743.x"),
@@ -84,6 +87,16 @@ fn scenario(target: &Path) -> Result<(), String> {
         embedded.source,
         carried(&top)?
     );
+    fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))?;
+    replayed(&top, &target.with_file_name("raptor.rs"))
+}
+
+/// Writes the network that [`firmware::replay`] flies, and no image that flies carries, to `target`.
+fn replayed(top: &Path, target: &Path) -> Result<(), String> {
+    let file = top.join(RECURRENT_POLICY);
+    println!("cargo::rerun-if-changed={}", file.display());
+    let text = scenario::text::read(&file).map_err(|error| format!("{RECURRENT_POLICY}: {error}"))?;
+    let source = policy::network(&text, RECURRENT_POLICY)?;
     fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))
 }
 

@@ -17,6 +17,7 @@
 //! | [`actuators`] | the past commands through the rotors' lag and delay: the wrench that the estimates compare with | 10 |
 //! | [`fallback`] | the same law, slowed down, if a flight makes no progress | 13 |
 //! | [`rotor_loss`] | a rotor that fails: found, and flown without | 16 |
+//! | [`rotor_speeds`] | the speeds of an X's rotors as a wrench within limits and ranges, in place of the law's | |
 //! | [`saturation`] | the saturation that feedback passes | 1 |
 //! | [`measured`] | an accelerometer's acceleration and the rotors' speeds, where there are any | 2, 10 |
 //! | [`demand`] | an acceleration, or an attitude and a thrust, in place of the feedback | |
@@ -44,6 +45,7 @@ pub mod parameters;
 pub mod position;
 pub mod quantities;
 pub mod rotor_loss;
+pub mod rotor_speeds;
 pub mod saturation;
 pub mod thrust_range;
 

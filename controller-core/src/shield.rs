@@ -2,13 +2,16 @@
 //!
 //! ```text
 //! policy -> Demand -> Shield { Monitor } -+- step_on_demand -> Wrench     while the policy may fly
-//!                                         '- step           -> Wrench     at rest at a refuge, otherwise
+//!                                         +- step_on_rotors -> Wrench     the same, where it demands rotor speeds
+//!                                         '- step_within    -> Wrench     at rest at a refuge, otherwise
 //! ```
 //!
 //! A policy is anything that decides on an acceleration, or on an attitude and a thrust: a learned one, a planner, a
 //! law under study. Its demand takes the place of the law's feedback ubar ([`crate::extended::demand`]). So the limits
 //! on thrust, torque and rotors hold whatever it demands, and a hand-over changes ubar alone: nothing jumps, and the
-//! law's theorem holds from there on.
+//! law's theorem holds from there on. A policy may demand speeds of the rotors as well, past the law's attitude
+//! control: these are cut to ranges and limits ([`crate::extended::rotor_speeds`]), the law keeps beside them a memory
+//! from which it can take over, and the wrench jumps when it does.
 //!
 //! - [`monitor`]: when the law has to take over: a table of rules, each with its number and its reason;
 //! - [`network`]: a small network as a policy;
@@ -33,8 +36,9 @@ pub use settings::Settings;
 use crate::configuration::{Configuration, LawParameters};
 use crate::controller::Diagnostics;
 use crate::error::{InputError, ParameterError, Reason as Refused};
-use crate::extended::controller::{Controller, StoppingForecast};
+use crate::extended::controller::{Controller, FlownBy, StoppingForecast};
 use crate::extended::position::FeedbackLimits;
+use crate::extended::rotor_speeds::RotorSpeeds;
 use crate::heading::Heading;
 use crate::reference::Reference;
 use crate::state::{State, Wrench};
@@ -51,10 +55,16 @@ pub struct Observation {
     pub goal: Vector3<f32>,
     /// Where the heading generator points.
     pub heading: Heading,
+    /// The speeds that the rotors were told last, whoever flew, as [`Demand::Rotors`] has them; zeros where the vehicle
+    /// is no X.
+    pub rotors: [f32; 4],
 }
 
 /// Anything that decides what to do.
 pub trait Policy {
+    /// A flight begins: nothing is left of the one before.
+    fn begin(&mut self) {}
+
     /// What to do now; none to say nothing.
     fn act(&mut self, observation: &Observation) -> Option<Demand>;
 }
@@ -102,6 +112,8 @@ pub struct Shield {
     settings: Settings,
     monitor: Monitor,
     heading: HeadingGenerator,
+    /// For demands of speeds; none for a vehicle that is no X.
+    rotors: Option<RotorSpeeds>,
     /// The greatest levels of feedback while the law flies.
     limits: FeedbackLimits,
     period: f32,
@@ -128,6 +140,7 @@ impl Shield {
             settings: *settings,
             monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
             heading: HeadingGenerator::new(configuration.bounds(), period),
+            rotors: configuration.rotors().and_then(|rotors| RotorSpeeds::new(rotors, configuration.limits())),
             limits: stopping(configuration.vehicle().gravity),
             period,
             pilot: InControl::Policy,
@@ -177,6 +190,21 @@ impl Shield {
         self.heading.heading()
     }
 
+    /// Whether the vehicle flies demands of rotor speeds.
+    pub fn flies_rotors(&self) -> bool {
+        self.rotors.is_some()
+    }
+
+    /// The speeds that the rotors were told last, as [`Observation::rotors`].
+    pub fn rotors(&self, law: &Controller) -> [f32; 4] {
+        self.rotors.as_ref().map_or([0.0; 4], |rotors| rotors.speeds(&law.commanded()))
+    }
+
+    /// What a policy is to see in this tick.
+    pub fn observation(&self, law: &Controller, state: &State, goal: &Vector3<f32>) -> Observation {
+        Observation { state: *state, goal: *goal, heading: *self.heading(), rotors: self.rotors(law) }
+    }
+
     /// One tick of `law`, on what the policy `offers`; none if it says nothing.
     ///
     /// # Errors
@@ -199,14 +227,27 @@ impl Shield {
         state: &State,
         offers: Option<&Demand>,
     ) -> Result<ShieldStep, InputError> {
-        let prospect = law.stopping_forecast(state, &self.limits);
-        let against = self.judge(state, &prospect, offers);
+        let usable = self.listen(offers);
+        // A demand of speeds is judged by what it would do from now on.
+        let by = match (&self.pilot, &self.demand, &self.rotors) {
+            (InControl::Policy, Some(Demand::Rotors { speeds }), Some(rotors)) => {
+                FlownBy::Rotors(rotors.wrench(speeds, law.thrust_scale()))
+            }
+            _ => FlownBy::Law,
+        };
+        let prospect = law.stopping_forecast(state, &self.limits, by);
+        let against = self.judge(state, &prospect, usable);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {
             (InControl::Policy, Some(demand)) => {
                 self.heading.follow(demand);
                 let reference = Reference::resting(self.refuge(&prospect), *self.heading.heading());
-                let (wrench, diagnostics) = law.step_on_demand(state, &reference, demand)?;
+                let (wrench, diagnostics) = match (demand, &self.rotors) {
+                    (Demand::Rotors { speeds }, Some(rotors)) => {
+                        law.step_on_rotors(state, &reference, rotors, speeds)?
+                    }
+                    _ => law.step_on_demand(state, &reference, demand)?,
+                };
                 Ok(ShieldStep { wrench, diagnostics, reason: None, reference })
             }
             (pilot, _) => {
@@ -223,16 +264,22 @@ impl Shield {
         }
     }
 
-    /// What speaks against the policy in this tick.
-    fn judge(&mut self, state: &State, prospect: &StoppingForecast, offers: Option<&Demand>) -> Option<Reason> {
-        let usable = offers.map(|demand| demand.check().map(|()| *demand));
+    /// Takes up what the policy offers: whether it can be used; none where it says nothing.
+    fn listen(&mut self, offers: Option<&Demand>) -> Option<bool> {
+        let flies = |demand: &&Demand| self.rotors.is_some() || !matches!(demand, Demand::Rotors { .. });
+        let usable = offers.filter(|demand| demand.check().is_ok()).filter(flies);
         match usable {
-            Some(Ok(demand)) => (self.demand, self.silent) = (Some(demand), 0),
-            _ => self.silent = self.silent.saturating_add(1),
+            Some(demand) => (self.demand, self.silent) = (Some(*demand), 0),
+            None => self.silent = self.silent.saturating_add(1),
         }
+        offers.map(|_| usable.is_some())
+    }
+
+    /// What speaks against the policy in this tick.
+    fn judge(&mut self, state: &State, prospect: &StoppingForecast, usable: Option<bool>) -> Option<Reason> {
         self.doubtful = if prospect.doubtful { self.doubtful.saturating_add(1) } else { 0 };
         let seconds = |ticks: u32| ticks as f32 * self.period;
-        if matches!(usable, Some(Err(_))) {
+        if usable == Some(false) {
             return Some(Reason::Demand);
         }
         if self.demand.is_none() || seconds(self.silent) > self.settings.silence {

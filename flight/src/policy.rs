@@ -10,7 +10,7 @@ use controller_core::error::InputError;
 use controller_core::heading::Heading;
 use controller_core::law::{Command, Law};
 use controller_core::reference::Reference;
-use controller_core::shield::{Observation, Policy, Reason, Settings, Shield};
+use controller_core::shield::{Policy, Reason, Settings, Shield};
 use controller_core::state::State;
 use core::fmt;
 use nalgebra::Vector3;
@@ -121,6 +121,7 @@ impl<P: Policy> Aboard for Guarded<P> {
         let shield = self.shield.as_mut().ok_or(Refusal::NoPolicyUnderLaw)?;
         shield.set_settings(&Settings::new(low, high)).map_err(|_| Refusal::OutsideFence)?;
         shield.reset(heading);
+        self.policy.begin();
         (self.goal, self.last) = (*goal, None);
         Ok(())
     }
@@ -139,7 +140,7 @@ impl<P: Policy> Aboard for Guarded<P> {
         let (Some(shield), Some(law)) = (&mut self.shield, law.extended()) else {
             return Err(InputError::OutOfRange { field: "policy" });
         };
-        let observation = Observation { state: *state, goal: self.goal, heading: *shield.heading() };
+        let observation = shield.observation(law, state, &self.goal);
         let offers = self.policy.act(&observation);
         let flown = shield.step(law, state, offers.as_ref())?;
         let is_new = self.last != Some(flown.reason);

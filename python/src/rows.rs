@@ -6,6 +6,7 @@
 //! wrench      4   thrust along body z | torque(3) body
 //! demand      4   acceleration(3) world | yaw rate
 //!             5   q(4) scalar first, body to world | thrust
+//! rotors      4   speeds in [-1, 1]: front right, back right, back left, front left
 //! ```
 //!
 //! The order of `log.csv`. A heading is a direction, as everywhere, so that a row gives a reference back bit for bit.
@@ -88,6 +89,14 @@ pub fn rows<const N: usize>(array: &Bound<'_, PyAny>, count: usize, field: &str)
 pub fn counted<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Rows<N>> {
     let values = shaped(array, field, &format!("(n, {N})"), |shape| matches!(shape, [_, columns] if *columns == N))?;
     Ok(values.as_chunks().0.to_vec())
+}
+
+/// So many rows of so many numbers, one row after another.
+///
+/// # Errors
+/// Names `field` if it has another shape.
+pub fn wide_rows(array: &Bound<'_, PyAny>, count: usize, columns: usize, field: &str) -> PyResult<Vec<f64>> {
+    shaped(array, field, &format!("({count}, {columns})"), |shape| *shape == [count, columns])
 }
 
 /// Numbers of any count.
@@ -220,6 +229,11 @@ pub fn demand_rows(array: &Bound<'_, PyAny>, count: usize, field: &str) -> PyRes
     let allowed = format!("({count}, 4) or ({count}, 5)");
     let values = shaped(array, field, &allowed, |shape| matches!(shape, [rows, 4 | 5] if *rows == count))?;
     Ok(values.chunks_exact(if values.len() == 4 * count { 4 } else { 5 }).filter_map(demand).collect())
+}
+
+/// The speeds of rotors that a row demands.
+pub fn of_rotors(row: &[f64; 4]) -> Demand {
+    Demand::Rotors { speeds: row.map(|speed| speed as f32) }
 }
 
 /// A wrench as a row.

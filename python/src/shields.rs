@@ -3,11 +3,11 @@
 //! A step that is refused changes nothing, of rows none of them. No demand is refused that has the right shape: one
 //! that cannot be used hands over to the law.
 
-use crate::errors::{in_flight, refused};
+use crate::errors::{in_flight, refused, refused_field};
 use crate::laws::{ROWS_MAX, for_rotors, named, numbers, step_rows};
 use crate::rows::{
     REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, demand_row, demand_rows, measured, of_reference,
-    of_wrench, row, rows, wrench, wrench_rows,
+    of_rotors, of_wrench, row, rows, wrench, wrench_rows,
 };
 use crate::scenarios::Scenario;
 use crate::whole_number::Whole;
@@ -56,6 +56,11 @@ impl ShieldRow {
         self.reason.map_or("", Reason::word)
     }
 
+    /// The speeds that the rotors were told last.
+    fn rotors(&mut self) -> [f32; 4] {
+        self.law.extended().map_or([0.0; 4], |law| self.shield.rotors(law))
+    }
+
     fn step(&mut self, state: &State, demand: Option<&Demand>) -> Result<([f32; WRENCH_COLUMNS], Diagnostics), String> {
         if self.fresh {
             self.shield.reset(&Heading::from_attitude(&state.attitude));
@@ -66,6 +71,22 @@ impl ShieldRow {
         (self.fresh, self.reason, self.reference) = (false, flown.reason, flown.reference);
         Ok((of_wrench(&flown.wrench), flown.diagnostics))
     }
+}
+
+impl ShieldRow {
+    /// What was given, if the vehicle's rotors are an X.
+    fn of_an_x<T>(&self, given: T) -> PyResult<T> {
+        if self.shield.flies_rotors() {
+            return Ok(given);
+        }
+        let problem = "this vehicle flies none: it takes an X of four like rotors, front right counter-clockwise";
+        Err(refused_field("rotors", problem))
+    }
+}
+
+/// The refusal of two demands at once.
+fn both() -> PyErr {
+    refused_field("rotors", "a demand is given already; leave one of them out")
 }
 
 fn settings(&ShieldArguments { low, high, numbers, hand_overs }: &ShieldArguments) -> Settings {
@@ -179,21 +200,27 @@ hand_overs=10)")]
     /// Args:
     ///     state: (13,).
     ///     demand: (4,) or (5,), or None where the policy says nothing.
+    ///     rotors: (4,) in place of a demand: speeds of the rotors of an X, from -1, the least, to 1, the greatest.
     ///
     /// Returns:
     ///     The wrench (4,), as of `Law.step`.
     ///
     /// Raises:
     ///     ValueError: names the field of the state that cannot be used; nothing has changed then.
-    #[pyo3(signature = (state, demand=None))]
+    #[pyo3(signature = (state, demand=None, *, rotors=None))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
         state: &Bound<'py, PyAny>,
         demand: Option<&Bound<'py, PyAny>>,
+        rotors: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let state = measured(&row::<STATE_COLUMNS>(state, "state")?);
-        let demand = demand.map(|demand| demand_row(demand, "demand")).transpose()?;
+        let demand = match (demand, rotors) {
+            (Some(_), Some(_)) => return Err(both()),
+            (None, Some(rotors)) => Some(of_rotors(&self.one.of_an_x(row::<4>(rotors, "rotors")?)?)),
+            (demand, None) => demand.map(|demand| demand_row(demand, "demand")).transpose()?,
+        };
         let mut next = self.one.clone();
         let (wrench, diagnostics) = next.step(&state, demand.as_ref()).map_err(refused)?;
         (self.one, self.diagnostics) = (next, Some(diagnostics));
@@ -216,6 +243,13 @@ hand_overs=10)")]
     #[getter]
     fn hand_overs(&self) -> u32 {
         self.one.shield.hand_overs()
+    }
+
+    /// (4,): the speeds that the rotors were told last, whoever flew, as `step` takes them; zeros for a vehicle that is
+    /// no X.
+    #[getter]
+    fn rotors<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        PyArray1::from_slice(py, &self.one.rotors())
     }
 
     /// The reference (19,), at rest: where the law flies to, or would if it took over now.
@@ -323,19 +357,28 @@ hand_overs=10)")]
     }
 
     /// One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
-    /// to wrenches (rows, 4).
+    /// to wrenches (rows, 4). `rotors` (rows, 4) in place of demands are speeds of the rotors of an X, from -1, the
+    /// least, to 1, the greatest.
     ///
     /// If a state is refused, the error names the row and no row has changed.
-    #[pyo3(signature = (states, demands=None))]
+    #[pyo3(signature = (states, demands=None, *, rotors=None))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
         states: &Bound<'py, PyAny>,
         demands: Option<&Bound<'py, PyAny>>,
+        rotors: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = self.ones.len();
         let states = rows::<STATE_COLUMNS>(states, count, "states")?;
-        let demands = demands.map(|demands| demand_rows(demands, count, "demands")).transpose()?;
+        let demands = match (demands, rotors) {
+            (Some(_), Some(_)) => return Err(both()),
+            (None, Some(given)) => {
+                let given = self.start.of_an_x(rows::<4>(given, count, "rotors")?)?;
+                Some(given.iter().map(of_rotors).collect())
+            }
+            (demands, None) => demands.map(|demands| demand_rows(demands, count, "demands")).transpose()?,
+        };
         let (ones, wrenches) = step_rows(py, &self.ones, |one, number| {
             let demand = demands.as_ref().and_then(|demands| demands.get(number));
             one.step(&measured(&states[number]), demand).map(|(wrench, _)| wrench)
@@ -360,6 +403,12 @@ hand_overs=10)")]
     #[getter]
     fn hand_overs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_vec(py, self.ones.iter().map(|one| one.shield.hand_overs()).collect())
+    }
+
+    /// (rows, 4): as `Shield.rotors`.
+    #[getter]
+    fn rotors<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        array(py, self.ones.iter_mut().map(ShieldRow::rotors).collect())
     }
 
     /// (rows, 19): as `Shield.reference`.

@@ -1,6 +1,6 @@
 //! Records the states of the paper's flight and of the embedded scenario's recovery at 100 Hz, 500 Hz and 1 kHz for
 //! `firmware::replay`, as `states.f32` and `recovery.f32`, and prints for each rate the numbers of the recovery, of the
-//! estimate of it and of the same behind a shield on this machine, a line each:
+//! estimate of it and of the same behind a shield, with two networks, on this machine, a line each:
 //! `cargo run -p verification --example recorded_flights -- FOLDER`.
 
 use firmware::replay::estimate::Estimate;
@@ -29,14 +29,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut replay = Recovery::new(period).ok_or("the embedded scenario is not certified")?;
         let mut estimate = Estimate::new(period).ok_or("the estimator's figures are refused")?;
         let mut shielded = Shielded::new(period).ok_or("the embedded scenario cannot be shielded")?;
+        let mut remembers = Shielded::recurrent(period).ok_or("the network that remembers is refused")?;
         for state in &recovered {
             shielded.tick(state)?;
+            remembers.tick(state)?;
             replay.tick(state)?;
             estimate.tick(state);
         }
         println!("{}", replay.digest());
         println!("{}", estimate.digest().ok_or("no estimate at the end of the recovery")?);
         println!("{}", shielded.digest().ok_or("behind the shield law and network do not both fly")?);
+        println!("{}", remembers.digest().ok_or("law and network that remembers do not both fly")?);
         all.extend(recovered);
     }
     std::fs::write(folder.join("recovery.f32"), all.concat())?;

@@ -90,6 +90,11 @@ impl ActuatorState {
         }
     }
 
+    /// The newest command.
+    pub fn newest(&self) -> Vector4<f32> {
+        self.command_before(0)
+    }
+
     /// The command of `age` ticks before the newest, at most [`DELAY_MAX_TICKS`].
     fn command_before(&self, age: usize) -> Vector4<f32> {
         self.commanded.get(self.newest.wrapping_sub(age) % COMMANDS_KEPT).copied().unwrap_or_default()

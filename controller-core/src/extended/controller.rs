@@ -24,6 +24,7 @@ use super::memory::{Averages, Estimates, LastTick, Memory};
 use super::position::{FeedbackLimits, Filters, PositionLaw};
 use super::rotor_loss::detector::Detector;
 use super::rotor_loss::spinning::RotorLossLaw;
+use super::rotor_speeds::RotorSpeeds;
 use super::thrust_range::ThrustRange;
 use crate::allocation::Rotors;
 use crate::configuration::ExtendedLaw;
@@ -40,6 +41,8 @@ enum FeedbackSource<'a> {
     /// The law, with these levels at most.
     Law(&'a FeedbackLimits),
     Policy(&'a Demand),
+    /// From what the wrench of these speeds, which flies in place of the law's, makes of the vehicle.
+    Rotors(&'a RotorSpeeds, &'a [f32; 4]),
 }
 
 /// What rotors have made of past commands, as commanded: thrust, N, and torque, N m.
@@ -179,7 +182,33 @@ impl Controller {
         demand: &Demand,
     ) -> Result<(Wrench, Diagnostics), InputError> {
         demand.check()?;
+        if matches!(demand, Demand::Rotors { .. }) {
+            return Err(InputError::OutOfRange { field: "demand.speeds" });
+        }
         self.shielded_tick(state, reference, &FeedbackSource::Policy(demand))
+    }
+
+    /// One tick in which the rotors turn at `speeds`, in the law's place: their wrench, within ranges and limits, is
+    /// what comes back, unless a rotor is lost. The law goes through its tick beside it: it learns from what flew, and
+    /// its filters are put where the thrust points, with the rate at which the vehicle turns it and the lift that holds
+    /// the height, all cut to the envelope. So the law can take over at any tick from a memory that its own flights
+    /// could have. The reference as for a demand.
+    ///
+    /// # Errors
+    /// As [`Self::step`]'s.
+    pub fn step_on_rotors(
+        &mut self,
+        state: &State,
+        reference: &Reference,
+        rotors: &RotorSpeeds,
+        speeds: &[f32; 4],
+    ) -> Result<(Wrench, Diagnostics), InputError> {
+        self.shielded_tick(state, reference, &FeedbackSource::Rotors(rotors, speeds))
+    }
+
+    /// The newest command, (T, tau) divided by the thrust scale: what the rotors were told, N and N m.
+    pub fn commanded(&self) -> Vector4<f32> {
+        self.memory.actuators.newest()
     }
 
     /// One tick whose feedback keeps to `limits`. Every theorem on feedback holds for lower levels as well.
@@ -230,8 +259,16 @@ impl Controller {
         let rest = self.acceleration_command(reference, &Vector3::zeros());
         let force = held(&force, &rest, acceleration_max);
 
-        let filters = self.memory.filters;
-        let feedback = self.feedback(state, reference, &force, acceleration_max, source);
+        // With the scale by which the caller will divide it.
+        let turned = match source {
+            FeedbackSource::Rotors(rotors, speeds) => Some(rotors.wrench(speeds, scale)),
+            _ => None,
+        };
+        let filters = match &turned {
+            Some(_) => self.filters_beside(state, &axis, &force, acceleration_max),
+            None => self.memory.filters,
+        };
+        let feedback = self.feedback(state, reference, &filters, &force, acceleration_max, source);
         let direction = self.direction_command(reference, &filters, &feedback, acceleration_max);
         let errors = self.attitude_errors(state, reference, &direction, &self.late(scale, &bias, &pending));
         let tilt = self.tilt_torque(state, &direction, &errors, &bias, scale);
@@ -256,7 +293,8 @@ impl Controller {
 
         let yaw = self.yaw_torque(&state.angular_velocity, &errors, &motion, bias.z);
         let along = self.vehicle.mass * direction.length * direction.command.dot(&axis) / direction.turn.magnitude;
-        let (wrench, yaw_torque_left) = self.range.limited(along, &tilt.torque, [yaw.torque, yaw.braking], scale);
+        let (own, yaw_torque_left) = self.range.limited(along, &tilt.torque, [yaw.torque, yaw.braking], scale);
+        let wrench = turned.unwrap_or(own);
         self.memory.yaw_torque_left = yaw_torque_left;
         self.memory.wrench_offset = lasting;
         let forward = Vector3::new(tilt.acceleration.x, tilt.acceleration.y, yaw.forward);
@@ -305,7 +343,7 @@ mod forecast;
 mod sections;
 mod without_a_rotor;
 
-pub use forecast::StoppingForecast;
+pub use forecast::{FlownBy, StoppingForecast};
 
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,9 @@
 //!
 //! From ubar on everything is as always: filters, turning limit, attitude law, thrust floor and ceiling. So a demand
 //! comes out as late as the law's own feedback does, and within the same limits.
+//!
+//! Speeds of the rotors are the third kind. They take the place of the wrench itself: [`super::rotor_speeds`] makes
+//! one of them, and [`Controller::step_on_rotors`](super::controller::Controller::step_on_rotors) flies it.
 
 use crate::error::InputError;
 use crate::reference::DERIVATIVE_RANGE;
@@ -30,6 +33,12 @@ pub enum Demand {
         /// N.
         thrust: f32,
     },
+    /// Turn the rotors of an X of four; a [`Shield`](crate::shield::Shield) alone flies it.
+    Rotors {
+        /// From -1, the least speed of a rotor, to 1, its greatest; what is beyond is cut. Front right, back right,
+        /// back left, front left.
+        speeds: [f32; 4],
+    },
 }
 
 impl Demand {
@@ -51,6 +60,13 @@ impl Demand {
                     (&Vector3::repeat(*thrust), DERIVATIVE_RANGE, "demand.thrust"),
                 ])?;
                 if is_rotation(attitude) { Ok(()) } else { Err(InputError::NotARotation { field }) }
+            }
+            Self::Rotors { speeds: [first, second, third, fourth] } => {
+                let field = "demand.speeds";
+                check_vectors(&[
+                    (&Vector3::new(*first, *second, *third), DERIVATIVE_RANGE, field),
+                    (&Vector3::repeat(*fourth), DERIVATIVE_RANGE, field),
+                ])
             }
         }
     }

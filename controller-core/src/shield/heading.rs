@@ -52,6 +52,7 @@ impl HeadingGenerator {
         let wanted = match demand {
             Demand::Acceleration { yaw_rate, .. } => *yaw_rate,
             Demand::Attitude { attitude, .. } => self.towards(&forwards(attitude)),
+            Demand::Rotors { .. } => 0.0,
         };
         self.turn(wanted);
     }

@@ -280,3 +280,5 @@ fn the_heading_arrives_at_an_angle_without_going_beyond_and_stays_where_bounds_a
     still.follow(&turned(1.0));
     assert_eq!(*still.heading(), Heading::FORWARD);
 }
+
+mod rotors;

@@ -1,5 +1,5 @@
-//! The paper's flight, and at 100 Hz, 500 Hz and 1 kHz a recovery, the estimate of it and the same behind a shield,
-//! replayed on an emulated board from the states in the files `states.f32` and `recovery.f32` of the emulator's working
+//! The paper's flight, and at 100 Hz, 500 Hz and 1 kHz a recovery, the estimate of it and the same behind a shield, with
+//! two networks, replayed on an emulated board from the states in the files `states.f32` and `recovery.f32` of the emulator's working
 //! directory, the latter one after the other. Prints the numbers that [`firmware::replay`] makes of them, a line each.
 //! Run by `.ci/emulated bits`.
 
@@ -43,15 +43,18 @@ mod target {
         let mut recovery = Recovery::new(period).ok_or("the embedded scenario is not certified on this machine")?;
         let mut estimate = Estimate::new(period).ok_or("the estimator's figures are refused on this machine")?;
         let mut shielded = Shielded::new(period).ok_or("the embedded scenario is shielded on no machine")?;
+        let mut remembers = Shielded::recurrent(period).ok_or("the network that remembers is refused")?;
         for _ in 0..recovery::RECOVERY_DURATION_US / period {
             file.read_exact(&mut record).map_err(|_| "recovery.f32: too short")?;
             estimate.tick(&record);
             recovery.tick(&record).map_err(|_| "the law refuses a recorded state of the recovery")?;
             shielded.tick(&record).map_err(|_| "the law refuses a recorded state behind the shield")?;
+            remembers.tick(&record).map_err(|_| "the law refuses a recorded state beside rotor speeds")?;
         }
         hprintln!("{}", recovery.digest());
         hprintln!("{}", estimate.digest().ok_or("no estimate at the end of the recovery")?);
         hprintln!("{}", shielded.digest().ok_or("behind the shield law and network do not both fly")?);
+        hprintln!("{}", remembers.digest().ok_or("law and network that remembers do not both fly")?);
         Ok(())
     }
 }

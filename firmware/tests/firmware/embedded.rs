@@ -6,7 +6,7 @@ mod embed;
 mod policy;
 
 use embed::{Embedded, embedded};
-use scenario::policy::PolicyFile;
+use scenario::policy::{LayerNumbers, PolicyFile};
 use scenario::{Scenario, board};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -151,7 +151,8 @@ fn a_policy_is_built_in_to_the_bit_and_one_that_does_not_fit_is_refused_by_name(
         .filter_map(|number| number.trim().parse().ok())
         .collect();
     let PolicyFile { layers, .. } = PolicyFile::parse(&text, name).unwrap();
-    assert_eq!(weights, layers[0].0);
+    let LayerNumbers::Dense { affine, .. } = &layers[0] else { panic!("a dense layer is read as one") };
+    assert_eq!(weights, affine.weights);
     let refused = policy::source(&text.replace("0.0, 0.0, 0.0, 0.0]\n", "0.0]\n"), name).unwrap_err();
     assert_eq!(refused, format!("{name}: layers[0].weights: must have a row for each of 1 biases, found 4"));
     // An image without one has the type for that.

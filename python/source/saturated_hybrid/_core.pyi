@@ -340,12 +340,15 @@ class Shield:
         """As before a flight, law included."""
     def ask_again(self) -> None:
         """Counts hand-overs anew: the policy may fly again."""
-    def step(self, state: ArrayLike, demand: ArrayLike | None = None) -> NDArray[np.float32]:
+    def step(
+        self, state: ArrayLike, demand: ArrayLike | None = None, *, rotors: ArrayLike | None = None
+    ) -> NDArray[np.float32]:
         """One control tick.
 
         Args:
             state: (13,).
             demand: (4,) or (5,), or None where the policy says nothing.
+            rotors: (4,) in place of a demand: speeds of the rotors of an X, from -1, the least, to 1, the greatest.
 
         Returns:
             The wrench (4,), as of `Law.step`.
@@ -362,6 +365,10 @@ class Shield:
     @property
     def hand_overs(self) -> int:
         """How often the law took over since the reset, or since `ask_again`."""
+    @property
+    def rotors(self) -> NDArray[np.float32]:
+        """(4,): the speeds that the rotors were told last, whoever flew, as `step` takes them; zeros for a vehicle that
+        is no X."""
     @property
     def reference(self) -> NDArray[np.float32]:
         """The reference (19,), at rest: where the law flies to, or would if it took over now."""
@@ -407,9 +414,12 @@ class ShieldRows:
         """Resets the rows that are chosen, (rows,) bool; all of them if none are given."""
     def ask_again(self, chosen: Sequence[bool] | None = None) -> None:
         """As `Shield.ask_again`, of the rows that are chosen."""
-    def step(self, states: ArrayLike, demands: ArrayLike | None = None) -> NDArray[np.float32]:
+    def step(
+        self, states: ArrayLike, demands: ArrayLike | None = None, *, rotors: ArrayLike | None = None
+    ) -> NDArray[np.float32]:
         """One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
-        to wrenches (rows, 4).
+        to wrenches (rows, 4). `rotors` (rows, 4) in place of demands are speeds of the rotors of an X, from -1, the
+        least, to 1, the greatest.
 
         If a state is refused, the error names the row and no row has changed.
         """
@@ -423,6 +433,9 @@ class ShieldRows:
     def hand_overs(self) -> NDArray[np.uint32]:
         """(rows,): as `Shield.hand_overs`."""
     @property
+    def rotors(self) -> NDArray[np.float32]:
+        """(rows, 4): as `Shield.rotors`."""
+    @property
     def references(self) -> NDArray[np.float32]:
         """(rows, 19): as `Shield.reference`."""
     def hold_estimates(self, chosen: Sequence[bool] | None = None) -> None:
@@ -435,7 +448,8 @@ class ShieldRows:
 
 @final
 class Network:
-    """A network that decides on an acceleration and a yaw rate, from a file as docs/shield.md has it."""
+    """A network that decides on an acceleration and a yaw rate, or on the speeds of an X's rotors, from a file as
+    docs/shield.md has it."""
 
     @staticmethod
     def read(path: str | PathLike[str]) -> Network:
@@ -444,16 +458,34 @@ class Network:
     def parse(text: str, file: str = "policy") -> Network:
         """Reads TOML text, which errors call `file`."""
     @property
-    def scale(self) -> NDArray[np.float32]:
-        """(4,): what the outputs are multiplied by, m/s^2 three times and rad/s."""
+    def scale(self) -> NDArray[np.float32] | None:
+        """(4,): what the outputs are multiplied by, m/s^2 three times and rad/s; None where they are speeds of rotors."""
+    @property
+    def demanded(self) -> str:
+        """What it demands: "acceleration" or "rotors"."""
+    def memory(self, rows: int) -> NDArray[np.float32]:
+        """(rows, m) float32: what a network of recurrent layers remembers at first; m is zero for the others."""
+    def inputs(
+        self, states: ArrayLike, goals: ArrayLike, headings: ArrayLike, last: ArrayLike
+    ) -> NDArray[np.float32]:
+        """The inputs (n, 22), float32, of this network for states (n, 13), goals (n, 3), m, world, headings (n, 2), unit
+        vectors, and what came last (n, 4): its outputs, zeros at first; or, where it demands speeds of rotors, the ones
+        that flew, `ShieldRows.rotors`."""
+    def advance(
+        self, observations: ArrayLike, memories: ArrayLike
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """The outputs (n, 4) and memories (n, m), float32, for inputs (n, 22) and memories (n, m): of a network with
+        recurrent layers, or of any other with m zero. Outputs that demand speeds may be beyond -1 and 1."""
     @staticmethod
     def observe(states: ArrayLike, goals: ArrayLike, headings: ArrayLike, outputs: ArrayLike) -> NDArray[np.float32]:
         """The inputs (n, 22), float32, for states (n, 13), goals (n, 3), m, world, headings (n, 2), unit vectors, and the
-        last outputs (n, 4), zeros at first. `ShieldRows.references[:, 15:17]` are the headings of a flight."""
+        last outputs (n, 4), zeros at first, of a network that demands accelerations. `ShieldRows.references[:, 15:17]`
+        are the headings of a flight."""
     def act(self, observations: ArrayLike) -> NDArray[np.float32]:
-        """The outputs (n, 4), float32, from -1 to 1, for inputs (n, 22)."""
+        """The outputs (n, 4), float32, for inputs (n, 22). A network with recurrent layers wants `advance`."""
     def demands(self, outputs: ArrayLike, headings: ArrayLike) -> NDArray[np.float32]:
-        """The demands (n, 4), float32, for outputs (n, 4) and headings (n, 2): accelerations in the world and yaw rates."""
+        """The demands (n, 4), float32, for outputs (n, 4) and headings (n, 2): accelerations in the world and yaw rates; or
+        speeds, for `ShieldRows.step(…, rotors=…)`."""
 
 @final
 class Allocation:

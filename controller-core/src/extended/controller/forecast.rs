@@ -15,11 +15,21 @@ use crate::extended::position::FeedbackLimits;
 use crate::heading::Heading;
 use crate::math;
 use crate::reference::Reference;
-use crate::state::State;
+use crate::state::{State, Wrench};
 use nalgebra::Vector3;
 
 /// The part of the torque that feedback is taken to use while the frame turns.
 const FEEDBACK_SHARE: f32 = 0.5;
+
+/// What has flown the vehicle so far, which says where its thrust points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FlownBy {
+    /// The law, or a demand to it: thrust points near its command, and turns with it.
+    Law,
+    /// Rotor speeds in the law's place, by this wrench from now on: thrust points where the vehicle does, and turns as
+    /// that does. The law's command is that direction cut to the envelope, which may be far from it.
+    Rotors(Wrench),
+}
 
 /// What is ahead of a vehicle. World frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +49,7 @@ pub struct StoppingForecast {
 
 impl Controller {
     /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
-    pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits) -> StoppingForecast {
+    pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits, by: FlownBy) -> StoppingForecast {
         let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;
         let max = self.ceiling.at(scale, &torque);
@@ -51,9 +61,28 @@ impl Controller {
         command.z += self.vehicle.gravity;
         let magnitude = math::sqrt(command.norm_squared());
 
-        let reaction = self.reaction(&z_2, &command, &force, max, most);
+        let axis = thrust_axis(&state.attitude);
+        // First it comes to rest, then it turns from rest to rest.
+        let (pointing, turns) = match &by {
+            FlownBy::Law => {
+                let moving = self.position.rate(filters);
+                (command, math::sqrt(moving.cross(&command).norm_squared()) / command.norm_squared())
+            }
+            FlownBy::Rotors(wrench) => {
+                let sped_up = wrench.torque.xy().component_div(&self.vehicle.inertia.xy()) * self.acting();
+                (axis, math::sqrt((state.angular_velocity.xy() + sped_up).norm_squared()))
+            }
+        };
+        let reaction = self.reaction(&z_2, (&pointing, turns), &force, max, most);
         let went_on = z_1 + z_2 * reaction;
-        let sped_up = acceleration * reaction;
+        let sped_up = match &by {
+            FlownBy::Law => acceleration * reaction,
+            // What it pushes beyond the law's own command, for as long as it acts; and that for as long as turning takes.
+            FlownBy::Rotors(wrench) => {
+                let push = axis * (wrench.thrust / self.vehicle.mass) - command;
+                push * self.acting() + acceleration * reaction
+            }
+        };
         let push_velocity = self.pushed(&command, max);
         let stop = |at: Vector3<f32>, speed: Vector3<f32>| {
             let levels = self.position.stopping_levels(&speed, &force, max, most);
@@ -70,13 +99,18 @@ impl Controller {
                 stop(went_on, z_2),
                 stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up + push_velocity),
             ],
-            alignment: thrust_axis(&state.attitude).dot(&command) / magnitude,
+            alignment: axis.dot(&command) / magnitude,
             doubtful: self.memory.held > 0
                 || self.memory.without_velocity > 0
                 || self.spinning.is_some()
                 || self.is_at_a_level()
                 || !self.is_held(&force, max),
         }
+    }
+
+    /// For how long a wrench acts beyond the tick that ends it, and in that tick, s.
+    fn acting(&self) -> f32 {
+        self.late + self.period
     }
 
     /// The velocity that thrust makes across while the thrust direction lags, m/s: section 1's n* beside n.
@@ -87,26 +121,24 @@ impl Controller {
         Vector3::new(command.x * speed, command.y * speed, 0.0)
     }
 
-    /// How much longer than the filters the thrust direction takes from where it points to where stopping has it, s.
+    /// How much longer than the filters the thrust direction takes from where it is `pointing`, in a turn of so many
+    /// rad/s, to where stopping has it, s.
     fn reaction(
         &self,
         z_2: &Vector3<f32>,
-        command: &Vector3<f32>,
+        (pointing, turns): (&Vector3<f32>, f32),
         force: &Vector3<f32>,
         max: f32,
         most: &FeedbackLimits,
     ) -> f32 {
         let mut stopping = self.position.stopping(z_2, force, max, most);
         stopping.z += self.vehicle.gravity;
-        let angle = angle(command, &stopping);
+        let angle = angle(pointing, &stopping);
         let parameters = &self.law.parameters;
         let left = (1.0 - FEEDBACK_SHARE) * self.budget.radius(self.thrust_scale());
         let inertia = math::max(self.vehicle.inertia.x, self.vehicle.inertia.y);
         let acceleration = math::max(left / inertia, parameters.turn_reserve);
         let rate = parameters.turn_rate;
-        // First it comes to rest, then it turns from rest to rest.
-        let moving = self.position.rate(&self.memory.filters);
-        let turns = math::sqrt(moving.cross(command).norm_squared()) / command.norm_squared();
         let stops = turns / acceleration;
         let angle = angle + 0.5 * turns * stops;
         let turning = if angle * acceleration > rate * rate {
@@ -115,7 +147,7 @@ impl Controller {
             2.0 * math::sqrt(angle / acceleration)
         };
         let turning = stops + turning;
-        math::max(turning - self.position.lag(), 0.0) + self.late + self.period
+        math::max(turning - self.position.lag(), 0.0) + self.acting()
     }
 
     /// Whether the thrust holds all of the force.

@@ -19,6 +19,9 @@ use nalgebra::{Quaternion, Vector2, Vector3, Vector4};
 /// The least share of M_theta that a bias leaves.
 const LEVEL_SHARE_MIN: f32 = 0.05;
 
+/// The least cosine of a tilt by which a lift is divided; what is beyond the envelope is cut anyway.
+const UPRIGHT_COSINE_MIN: f32 = 0.1;
+
 /// Where u points, and how it would turn.
 pub(super) struct DirectionCommand {
     /// u, m/s^2.
@@ -83,11 +86,12 @@ impl Controller {
         &self,
         state: &State,
         reference: &Reference,
+        filters: &Filters,
         force: &Vector3<f32>,
         acceleration_max: f32,
         source: &FeedbackSource,
     ) -> PositionFeedback {
-        let (law, filters) = (self.position_law(), &self.memory.filters);
+        let law = self.position_law();
         match source {
             FeedbackSource::Law(limits) => {
                 let limits = if self.memory.fallback.is_slow() { &self.slow } else { *limits };
@@ -97,7 +101,26 @@ impl Controller {
                 let feedback = self.demanded_feedback(state, demand, force);
                 law.feedback_on_demand(state, reference, filters, force, acceleration_max, &feedback)
             }
+            FeedbackSource::Rotors(..) => {
+                law.feedback_on_demand(state, reference, filters, force, acceleration_max, &filters.smoothed)
+            }
         }
+    }
+
+    /// c, x and y as the law would have them if it had pointed the thrust where the vehicle does, turned it across as
+    /// the vehicle turns, and held the height: the law begins with the lift that holds, not with what flew before.
+    pub(super) fn filters_beside(
+        &self,
+        state: &State,
+        axis: &Vector3<f32>,
+        force: &Vector3<f32>,
+        acceleration_max: f32,
+    ) -> Filters {
+        let lift = self.vehicle.gravity - force.z;
+        let mut wanted = axis * (lift / math::max(axis.z, UPRIGHT_COSINE_MIN));
+        let turning = rotate_back(&state.attitude.conjugate(), &state.angular_velocity).cross(&wanted);
+        wanted.z = -force.z;
+        self.position_law().filters_at(&wanted, &Vector3::new(turning.x, turning.y, 0.0), acceleration_max)
     }
 
     /// Section 3: where u points, and how it would turn.
@@ -217,6 +240,8 @@ impl Controller {
                 feedback.z -= self.vehicle.gravity;
                 feedback
             }
+            // Refused before.
+            Demand::Rotors { .. } => -force,
         }
     }
 

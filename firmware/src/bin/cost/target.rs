@@ -19,13 +19,13 @@ use controller_core::math;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use controller_core::reference::hover::Hover;
 use controller_core::reference::{Reference, Trajectory};
-use controller_core::shield::network::{INPUT_COUNT, Network, OUTPUT_COUNT, inputs as inputs_of};
-use controller_core::shield::{Demand, Observation, Settings, Shield, ShieldStep};
+use controller_core::shield::network::{INPUT_COUNT, Memory as Remembered, Network, OUTPUT_COUNT};
+use controller_core::shield::{Demand, Settings, Shield, ShieldStep};
 use controller_core::state::{State, Wrench};
 use core::hint::black_box;
 use cortex_m_semihosting::hprintln;
 use firmware::boards::mps2::exit;
-use firmware::replay::shielded::network;
+use firmware::replay::shielded::{network, recurrent_network};
 use firmware::{configuration, replay};
 use nalgebra::{Quaternion, Vector3};
 use static_cell::ConstStaticCell;
@@ -38,6 +38,8 @@ const PERIOD_S: f32 = 0.01;
 type Step = fn(&mut Law, &State, &Reference) -> Result<Command, InputError>;
 
 type Shielded = fn(&mut Shield, &mut Controller, &State, Option<&Demand>) -> Result<ShieldStep, InputError>;
+
+type Outputs = fn(&Network<'static>, &[f32; INPUT_COUNT], &mut Remembered) -> [f32; OUTPUT_COUNT];
 
 type Allocate = fn(&Mixer, &Wrench) -> Result<Allocation, InputError>;
 
@@ -81,7 +83,7 @@ fn measure() -> bool {
     let mut flight = Flight { law: papers_law, mixer: None, certified: &papers, counter: &counter };
     let Some((_, cost)) = flight.fly(settled, &circle, &mut Cost::default()) else { return false };
     cost.print("step, circle, the paper's law");
-    if !shielded(&counter, &certified, &settled) {
+    if ![false, true].iter().all(|turns_rotors| shielded(&counter, &certified, &settled, *turns_rotors)) {
         hprintln!("the shield does not let its policy fly");
         return false;
     }
@@ -166,20 +168,27 @@ impl Flight<'_> {
     }
 }
 
-/// A hover behind the shield, and the network that would fly it; whether the policy flew.
-fn shielded(counter: &Counter, certified: &Certified, from: &State) -> bool {
+/// A hover behind the shield, by accelerations or by speeds of the rotors, and the network that would fly it; whether
+/// the policy flew.
+fn shielded(counter: &Counter, certified: &Certified, from: &State, turns_rotors: bool) -> bool {
     let (corner, zero) = (Vector3::repeat(20.0), Vector3::zeros());
     let shield = Shield::new(certified.configuration(), &Settings::new(-corner, corner), PERIOD_S);
     let (Ok(mut law), Ok(mut shield)) = (Law::new(certified, PERIOD_S), shield) else { return false };
-    let (Some(law), Some(network)) = (law.extended(), network()) else { return false };
+    let network = if turns_rotors { recurrent_network() } else { network() };
+    let (Some(law), Some(network)) = (law.extended(), network) else { return false };
     let step: Shielded = black_box(Shield::step);
-    let outputs: fn(&Network<'static>, &[f32; INPUT_COUNT]) -> [f32; OUTPUT_COUNT] = black_box(Network::outputs);
+    let outputs: Outputs = black_box(Network::outputs);
     let (mut cost, mut thinking, mut state) = (Cost::default(), Cost::default(), *from);
-    let observation = Observation { state, goal: zero, heading: Heading::FORWARD };
-    let inputs = inputs_of(&observation, &[0.0; OUTPUT_COUNT]);
+    let observation = shield.observation(law, &state, &zero);
+    let inputs = network.interface().inputs(&observation, &[0.0; OUTPUT_COUNT]);
+    let (mut memory, hover) = (network.fresh(), observation.rotors);
     for _ in 0..FLIGHT_STEPS {
         let acceleration = -state.velocity - (state.position - from.position);
-        let demand = Demand::Acceleration { acceleration, yaw_rate: 0.0 };
+        let demand = if turns_rotors {
+            Demand::Rotors { speeds: hover }
+        } else {
+            Demand::Acceleration { acceleration, yaw_rate: 0.0 }
+        };
         let (instructions, flown) = counter.short(|| step(&mut shield, law, &state, Some(&demand)));
         let Ok(flown) = flown else { return false };
         if flown.reason.is_some() {
@@ -187,12 +196,17 @@ fn shielded(counter: &Counter, certified: &Certified, from: &State) -> bool {
         }
         cost.add(instructions);
         body::advance(&mut state, certified.configuration().vehicle(), &flown.wrench, PERIOD_S);
-        let (instructions, answer) = counter.short(|| outputs(&network, &inputs));
+        let (instructions, answer) = counter.short(|| outputs(&network, &inputs, &mut memory));
         black_box(answer);
         thinking.add(instructions);
     }
-    cost.print("shielded step, the policy's");
-    thinking.print("network, 22, 32, 32, 4");
+    let [of_step, of_network] = if turns_rotors {
+        ["shielded step, rotor speeds", "network, 22, 16, 16 that remember, 4"]
+    } else {
+        ["shielded step, the policy's", "network, 22, 32, 32, 4"]
+    };
+    cost.print(of_step);
+    thinking.print(of_network);
     true
 }
 
