@@ -16,21 +16,25 @@
 //! - [`monitor`]: when the law has to take over: a table of rules, each with its number and its reason;
 //! - [`network`]: a small network as a policy;
 //! - [`reason`]: those reasons in words;
-//! - [`settings`]: the box, and the numbers of the rules;
+//! - [`room`]: a box to stay in;
+//! - [`settings`]: the rooms, and the numbers of the rules;
 //! - `heading`: a heading that turns within the certified bounds.
 //!
-//! The refuge is a place in the box near z_1 at the hand-over, at rest: the law brakes there with all that the
-//! envelope has. The policy gets the vehicle back once it has been near the refuge for a while, and again after longer
+//! A policy flies while some room holds the whole prospect: the way to a stop is then inside that room. Where two rooms
+//! overlap, a vehicle goes from one to the other. The refuge is a place near z_1 at the hand-over, at rest, in the room
+//! that held the prospect last: the law brakes there with all that the envelope has. The policy gets the vehicle back once it has been near the refuge for a while, and again after longer
 //! each time, up to a number of hand-overs. `docs/shield.md` says what is proven of it.
 
 mod heading;
 pub mod monitor;
 pub mod network;
 pub mod reason;
+pub mod room;
 pub mod settings;
 
 pub use crate::extended::demand::Demand;
 pub use reason::Reason;
+pub use room::Room;
 pub use settings::Settings;
 
 use crate::configuration::{Configuration, LawParameters};
@@ -110,6 +114,8 @@ const REFUGE_RADIUS: f32 = 0.2;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shield {
     settings: Settings,
+    /// The room that held the prospect last, without its margin; none before the first tick.
+    room: Option<Room>,
     monitor: Monitor,
     heading: HeadingGenerator,
     /// For demands of speeds; none for a vehicle that is no X.
@@ -138,6 +144,7 @@ impl Shield {
         settings.check()?;
         Ok(Self {
             settings: *settings,
+            room: None,
             monitor: Monitor::new(settings, &law.parameters, configuration.vehicle()),
             heading: HeadingGenerator::new(configuration.bounds(), period),
             rotors: configuration.rotors().and_then(|rotors| RotorSpeeds::new(rotors, configuration.limits())),
@@ -157,7 +164,7 @@ impl Shield {
     /// For one that makes no sense, by its name; nothing has changed then.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), ParameterError> {
         settings.check()?;
-        self.settings = *settings;
+        (self.settings, self.room) = (*settings, None);
         self.monitor.set_settings(settings);
         Ok(())
     }
@@ -165,7 +172,7 @@ impl Shield {
     /// As before a flight, pointing along `heading`.
     pub fn reset(&mut self, heading: &Heading) {
         self.heading.start(heading);
-        (self.pilot, self.demand) = (InControl::Policy, None);
+        (self.pilot, self.demand, self.room) = (InControl::Policy, None, None);
         (self.silent, self.doubtful) = (0, 0);
         self.hand_overs = 0;
     }
@@ -236,7 +243,9 @@ impl Shield {
             _ => FlownBy::Law,
         };
         let prospect = law.stopping_forecast(state, &self.limits, by);
-        let against = self.judge(state, &prospect, usable);
+        let inside = self.settings.room_of(&prospect.places, self.room.as_ref());
+        self.room = inside.or(self.room).or_else(|| self.settings.nearest_room(&prospect.z_1));
+        let against = self.judge(state, &prospect, inside.is_some(), usable);
         self.decide(&prospect, against);
         match (&self.pilot, &self.demand) {
             (InControl::Policy, Some(demand)) => {
@@ -276,7 +285,13 @@ impl Shield {
     }
 
     /// What speaks against the policy in this tick.
-    fn judge(&mut self, state: &State, prospect: &StoppingForecast, usable: Option<bool>) -> Option<Reason> {
+    fn judge(
+        &mut self,
+        state: &State,
+        prospect: &StoppingForecast,
+        inside: bool,
+        usable: Option<bool>,
+    ) -> Option<Reason> {
         self.doubtful = if prospect.doubtful { self.doubtful.saturating_add(1) } else { 0 };
         let seconds = |ticks: u32| ticks as f32 * self.period;
         if usable == Some(false) {
@@ -285,7 +300,7 @@ impl Shield {
         if self.demand.is_none() || seconds(self.silent) > self.settings.silence {
             return Some(Reason::Silent);
         }
-        self.monitor.violation(state, prospect, seconds(self.doubtful))
+        self.monitor.violation(state, prospect, inside, seconds(self.doubtful))
     }
 
     /// Hands over, either way.
@@ -312,7 +327,7 @@ impl Shield {
 
     /// Where the law would fly to if it took over now.
     fn refuge(&self, prospect: &StoppingForecast) -> Vector3<f32> {
-        self.settings.refuge(&prospect.z_1)
+        self.room.map_or(prospect.z_1, |room| room.refuge(&prospect.z_1))
     }
 }
 

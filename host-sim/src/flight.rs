@@ -6,7 +6,8 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`controller`] | our law or a rival, in the loop |
-//! | `estimation` | the core's estimator on the simulated instruments |
+//! | [`estimation`] | the core's estimator on the simulated instruments |
+//! | [`sensed_vehicle`] | the vehicle with its sensors or that estimator |
 //! | [`law_on_vehicle`] | a law on a vehicle, ready for any number of flights |
 //! | [`course`] | a flight's figures: height lost, overshoot, settling time |
 //! | [`tasks`] | tasks that every study flies |
@@ -16,22 +17,22 @@
 pub mod claims;
 pub mod controller;
 pub mod course;
-pub(crate) mod estimation;
+pub mod estimation;
 pub mod extremes;
 pub mod law_on_vehicle;
 pub mod least_command;
+pub mod sensed_vehicle;
 pub mod tasks;
 
 use crate::flight::controller::Controller;
-use crate::flight::estimation::{Estimation, NoEstimate};
+use crate::flight::estimation::NoEstimate;
+use crate::flight::sensed_vehicle::{Known, SensedVehicle};
 use crate::rivals::pilot::RivalPilot;
 use crate::rivals::rival::Rival;
-use crate::vehicle::SimulatedVehicle;
-use crate::vehicle::actuators::{ActuationError, ActuatorDemand};
+use crate::vehicle::actuators::ActuationError;
 use crate::vehicle::ground::Touchdown;
 use crate::vehicle::reality::Surroundings;
 use crate::vehicle::sensed::{Sensed, specific_force};
-use crate::vehicle::sensors::Sensors;
 use controller_core::allocation::Thrusts;
 use controller_core::allocation::remaining::LostRotor;
 use controller_core::certificate::certified::Certified;
@@ -52,9 +53,7 @@ use std::sync::Arc;
 /// A flight under way.
 #[derive(Clone)]
 pub struct Flight {
-    vehicle: SimulatedVehicle,
-    sensors: Option<Sensors>,
-    estimation: Option<Box<Estimation>>,
+    vehicle: SensedVehicle,
     controller: Controller,
     /// The state at the last tick.
     before: BodyState,
@@ -64,7 +63,6 @@ pub struct Flight {
     hover: Vector4<f64>,
     trajectory: Arc<dyn Trajectory + Send + Sync>,
     period_us: u64,
-    steps_per_tick: u32,
     tick: u64,
 }
 
@@ -199,20 +197,16 @@ impl Flight {
     }
 
     fn start(scenario: &Scenario, configuration: &Configuration, controller: Controller) -> Self {
-        let timing = &scenario.timing;
-        let vehicle = SimulatedVehicle::new(scenario, configuration);
+        let vehicle = SensedVehicle::new(scenario, configuration);
         let gravity = f64::from(configuration.vehicle().gravity);
         Self {
-            sensors: Sensors::new(scenario),
-            estimation: Estimation::new(scenario).map(Box::new),
             controller,
-            before: *vehicle.state(),
+            before: *vehicle.vehicle().state(),
             gravity,
             hover: Sensed::hovering(configuration.vehicle()).wrench,
             vehicle,
             trajectory: Arc::clone(&scenario.trajectory),
-            period_us: timing.period_us,
-            steps_per_tick: timing.steps_per_tick,
+            period_us: scenario.timing.period_us,
             tick: 0,
         }
     }
@@ -229,7 +223,7 @@ impl Flight {
 
     /// The last touch of the ground since the last call.
     pub fn take_touchdown(&mut self) -> Option<Touchdown> {
-        self.vehicle.take_touchdown()
+        self.vehicle.vehicle_mut().take_touchdown()
     }
 
     /// One control tick and the plant's motion until the next.
@@ -237,7 +231,8 @@ impl Flight {
     /// # Errors
     /// [`FlightError`] with the time; the flight cannot go on after it.
     pub fn tick(&mut self) -> Result<Tick, FlightError> {
-        let (rotors, surroundings) = (self.vehicle.thrusts(), self.vehicle.surroundings());
+        let vehicle = self.vehicle.vehicle();
+        let (rotors, surroundings) = (vehicle.thrusts(), vehicle.surroundings());
         let (measured, Brief { time_us, state, reference, wrench, clipped, rotor_thrusts, .. }, diagnostics) =
             self.advance(Controller::step)?;
         let (estimates, lost) = (self.controller.estimates(), self.controller.lost());
@@ -271,13 +266,14 @@ impl Flight {
         &mut self,
         step: impl FnOnce(&mut Controller, &State, &Sensed, &Reference) -> Answer<D>,
     ) -> Result<(Option<State>, Brief, D), FlightError> {
-        let (time_us, state, standing) = (self.time_us(), *self.vehicle.state(), self.vehicle.stands());
+        let vehicle = self.vehicle.vehicle();
+        let (time_us, state, standing) = (self.time_us(), *vehicle.state(), vehicle.stands());
         let reference = self.trajectory.at(time_us);
-        let measured = self.measure(&state).map_err(|error| self.error(Cause::Estimate(error)))?;
+        let measured = self.measure().map_err(|error| self.error(Cause::Estimate(error)))?;
         let sensed = self.sense(&state);
         let answer = step(&mut self.controller, &measured.unwrap_or_else(|| state.measured()), &sensed, &reference);
         let (Command { wrench, mrp }, more) = answer.map_err(|error| self.error(Cause::Law(error)))?;
-        let held = self.hold(&self.controller.demand(&wrench));
+        let held = self.vehicle.hold(&self.controller.demand(&wrench));
         let (clipped, rotor_thrusts) = held.map_err(|error| self.error(Cause::Actuation(error)))?;
         let clipped = clipped || self.controller.is_cut();
         // The motion was then another than the wrench alone would have made it.
@@ -300,19 +296,13 @@ impl Flight {
 
     /// The measured state, where that is not the true one.
     #[inline]
-    fn measure(&mut self, state: &BodyState) -> Result<Option<State>, NoEstimate> {
-        let Some(estimation) = &mut self.estimation else {
-            let Some(sensors) = &mut self.sensors else { return Ok(None) };
-            let measured = sensors.measure(state);
-            self.controller.measured(&Measured { acceleration: sensors.sensed_force(), wrench: None, lost: None });
-            return Ok(Some(measured));
-        };
-        let (measured, jumped) = estimation.state()?;
-        self.controller.measured(&Measured { acceleration: estimation.sensed_force(), wrench: None, lost: None });
+    fn measure(&mut self) -> Result<Option<State>, NoEstimate> {
+        let Some(Known { state, acceleration, jumped }) = self.vehicle.known()? else { return Ok(None) };
+        self.controller.measured(&Measured { acceleration, wrench: None, lost: None });
         if jumped {
             self.controller.hold_estimates();
         }
-        Ok(Some(measured))
+        Ok(Some(state))
     }
 
     /// What is sensed beside the measured state.
@@ -322,31 +312,9 @@ impl Flight {
         let period = self.period_us as f64 * 1e-6;
         let truth = Sensed {
             specific_force: specific_force(&before, state, period, self.gravity),
-            wrench: self.vehicle.take_acted().unwrap_or(self.hover),
+            wrench: self.vehicle.vehicle_mut().take_acted().unwrap_or(self.hover),
         };
-        match (&mut self.estimation, &mut self.sensors) {
-            (Some(estimation), _) => estimation.sense(&truth),
-            (None, Some(sensors)) => sensors.sense(&truth),
-            (None, None) => truth,
-        }
-    }
-
-    /// The vehicle's motion until the next tick, under this `demand` on its actuators.
-    #[inline]
-    fn hold(&mut self, demand: &ActuatorDemand) -> Result<(bool, Thrusts), ActuationError> {
-        let Some(estimation) = &mut self.estimation else {
-            return self.vehicle.hold(demand, self.steps_per_tick);
-        };
-        let (samples, mut clipped, mut thrusts) = (estimation.samples(self.period_us), false, Thrusts::new());
-        for _ in 0..samples {
-            let (cut, arrived) = self.vehicle.hold(demand, self.steps_per_tick / samples)?;
-            clipped |= cut;
-            if !arrived.is_empty() {
-                thrusts = arrived;
-            }
-            estimation.sample(self.vehicle.state());
-        }
-        Ok((clipped, thrusts))
+        self.vehicle.sense(truth)
     }
 }
 

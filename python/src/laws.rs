@@ -4,8 +4,8 @@
 
 use crate::errors::{in_flight, refused, refused_field};
 use crate::rows::{
-    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, measured, of_wrench, reference_of, row, rows, wrench,
-    wrench_rows,
+    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, felt, measured, of_wrench, reference_of, row, rows,
+    wrench, wrench_rows,
 };
 use crate::scenarios::Scenario;
 use crate::threads::shared;
@@ -85,21 +85,26 @@ impl Law {
     /// Args:
     ///     state: (13,).
     ///     reference: (19,).
+    ///     acceleration: (3,), since the last tick, by an accelerometer, m/s^2, world: the law's estimates then rest on
+    ///         it. NaN, or left out: there is none.
     ///
     /// Returns:
     ///     The wrench (4,), N and N m, not clipped to any limit. `for_rotors` says what to ask the rotors for.
     ///
     /// Raises:
     ///     ValueError: names the field that cannot be used; nothing has changed then.
+    #[pyo3(signature = (state, reference, acceleration=None))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
         state: &Bound<'py, PyAny>,
         reference: &Bound<'py, PyAny>,
+        acceleration: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let (state, reference) =
             (row::<STATE_COLUMNS>(state, "state")?, row::<REFERENCE_COLUMNS>(reference, "reference")?);
-        let (wrench, diagnostics) = step(&mut self.law, &state, &reference).map_err(refused)?;
+        let acceleration = acceleration.map(|given| row::<3>(given, "acceleration")).transpose()?;
+        let (wrench, diagnostics) = step(&mut self.law, &state, &reference, acceleration.as_ref()).map_err(refused)?;
         self.diagnostics = Some(diagnostics);
         Ok(PyArray1::from_slice(py, &of_wrench(&wrench)))
     }
@@ -217,20 +222,25 @@ impl LawRows {
         Ok(())
     }
 
-    /// One tick of every row: states (rows, 13), references (rows, 19), to wrenches (rows, 4).
+    /// One tick of every row: states (rows, 13), references (rows, 19), and accelerations (rows, 3) as of `Law.step`,
+    /// to wrenches (rows, 4).
     ///
     /// If one is refused, the error names the row and no row has changed.
+    #[pyo3(signature = (states, references, accelerations=None))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
         states: &Bound<'py, PyAny>,
         references: &Bound<'py, PyAny>,
+        accelerations: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = self.laws.len();
         let states = rows::<STATE_COLUMNS>(states, count, "states")?;
         let references = rows::<REFERENCE_COLUMNS>(references, count, "references")?;
+        let accelerations = accelerations.map(|given| rows::<3>(given, count, "accelerations")).transpose()?;
         let (laws, wrenches) = step_rows(py, &self.laws, |law, number| {
-            step(law, &states[number], &references[number]).map(|(wrench, _)| of_wrench(&wrench))
+            let acceleration = accelerations.as_ref().and_then(|accelerations| accelerations.get(number));
+            step(law, &states[number], &references[number], acceleration).map(|(wrench, _)| of_wrench(&wrench))
         })?;
         self.laws = laws;
         array(py, wrenches)
@@ -302,7 +312,11 @@ fn step(
     law: &mut law::Law,
     state: &[f64; STATE_COLUMNS],
     reference: &[f64; REFERENCE_COLUMNS],
+    acceleration: Option<&[f64; 3]>,
 ) -> Result<(Wrench, Diagnostics), String> {
     let reference = reference_of(reference).map_err(|error| format!("reference.{error}"))?;
+    if let Some(acceleration) = acceleration {
+        law.measured(&felt(acceleration));
+    }
     law.step(&measured(state), &reference).map_err(|error| error.to_string())
 }

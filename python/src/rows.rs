@@ -3,6 +3,7 @@
 //! ```text
 //! state      13   p(3) v(3) world, z up | q(4) scalar first, body to world | omega(3) body
 //! reference  19   p_d(3) v(3) a(3) j(3) s(3) world | nu_x nu_y (unit) | psi' psi''
+//! acceleration 3  v'(3) world, by an accelerometer; NaN without one
 //! wrench      4   thrust along body z | torque(3) body
 //! demand      4   acceleration(3) world | yaw rate
 //!             5   q(4) scalar first, body to world | thrust
@@ -12,6 +13,7 @@
 //! The order of `log.csv`. A heading is a direction, as everywhere, so that a row gives a reference back bit for bit.
 
 use crate::errors::{refused, refused_field};
+use controller_core::extended::measured::Measured;
 use controller_core::heading::Heading;
 use controller_core::reference::Reference;
 use controller_core::shield::Demand;
@@ -99,6 +101,16 @@ pub fn wide_rows(array: &Bound<'_, PyAny>, count: usize, columns: usize, field: 
     shaped(array, field, &format!("({count}, {columns})"), |shape| *shape == [count, columns])
 }
 
+/// One row, or rows of any number.
+///
+/// # Errors
+/// Names `field` if it has another shape.
+pub fn one_or_more<const N: usize>(array: &Bound<'_, PyAny>, field: &str) -> PyResult<Rows<N>> {
+    let fits = |shape: &[usize]| matches!(shape, [columns] | [_, columns] if *columns == N);
+    let values = shaped(array, field, &format!("({N},) or (n, {N})"), fits)?;
+    Ok(values.as_chunks().0.to_vec())
+}
+
 /// Numbers of any count.
 ///
 /// # Errors
@@ -134,6 +146,15 @@ pub fn body(row: &[f64; STATE_COLUMNS]) -> BodyState {
 /// The law's input state.
 pub fn measured(row: &[f64; STATE_COLUMNS]) -> State {
     body(row).measured()
+}
+
+/// What an accelerometer says beside a state, m/s^2, world: nothing where it is not finite.
+pub fn felt(row: &[f64; 3]) -> Measured {
+    let acceleration = Some(three(row, 0).map(|value| value as f32));
+    Measured {
+        acceleration: acceleration.filter(|felt| felt.iter().all(|value| value.is_finite())),
+        ..Measured::default()
+    }
 }
 
 /// A state as a row.

@@ -6,8 +6,8 @@
 use crate::errors::{in_flight, refused, refused_field};
 use crate::laws::{ROWS_MAX, for_rotors, named, numbers, step_rows};
 use crate::rows::{
-    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, demand_row, demand_rows, measured, of_reference,
-    of_rotors, of_wrench, row, rows, wrench, wrench_rows,
+    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, demand_row, demand_rows, felt, measured, of_reference,
+    of_rotors, of_wrench, one_or_more, row, rows, wrench, wrench_rows,
 };
 use crate::scenarios::Scenario;
 use crate::whole_number::Whole;
@@ -15,7 +15,8 @@ use controller_core::controller::Diagnostics;
 use controller_core::heading::Heading;
 use controller_core::law::Law;
 use controller_core::reference::Reference;
-use controller_core::shield::{self, Demand, Reason, Settings};
+use controller_core::shield::settings::ROOMS_MAX;
+use controller_core::shield::{self, Demand, Reason, Room, Settings};
 use controller_core::state::State;
 use host_sim::flight;
 use nalgebra::Vector3;
@@ -39,7 +40,9 @@ impl ShieldRow {
         let (configuration, period) = (&scenario.read.configuration, scenario.read.timing.period() as f32);
         let shield = shield::Shield::new(configuration, settings, period).map_err(refused)?;
         let law = flight::law(&scenario.read).map_err(refused)?;
-        let reference = Reference::resting(settings.refuge(&Vector3::zeros()), Heading::FORWARD);
+        let origin = Vector3::zeros();
+        let refuge = settings.nearest_room(&origin).map_or(origin, |room| room.refuge(&origin));
+        let reference = Reference::resting(refuge, Heading::FORWARD);
         Ok(Self { law, shield, fresh: true, reason: None, reference })
     }
 
@@ -61,7 +64,15 @@ impl ShieldRow {
         self.law.extended().map_or([0.0; 4], |law| self.shield.rotors(law))
     }
 
-    fn step(&mut self, state: &State, demand: Option<&Demand>) -> Result<([f32; WRENCH_COLUMNS], Diagnostics), String> {
+    fn step(
+        &mut self,
+        state: &State,
+        demand: Option<&Demand>,
+        acceleration: Option<&[f64; 3]>,
+    ) -> Result<([f32; WRENCH_COLUMNS], Diagnostics), String> {
+        if let Some(acceleration) = acceleration {
+            self.law.measured(&felt(acceleration));
+        }
         if self.fresh {
             self.shield.reset(&Heading::from_attitude(&state.attitude));
         }
@@ -89,29 +100,46 @@ fn both() -> PyErr {
     refused_field("rotors", "a demand is given already; leave one of them out")
 }
 
-fn settings(&ShieldArguments { low, high, numbers, hand_overs }: &ShieldArguments) -> Settings {
-    let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
-    let [speed, silence, patience, patience_greatest] = numbers.map(|value| value as f32);
-    Settings { speed, silence, patience, patience_greatest, hand_overs, ..Settings::new(corner(low), corner(high)) }
-}
-
 /// What a shield was made of.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct ShieldArguments {
-    low: [f64; 3],
-    high: [f64; 3],
-    /// Speed, silence, patience and its greatest.
-    numbers: [f64; 4],
+    /// The corners of its rooms, lower and upper.
+    rooms: Vec<[[f64; 3]; 2]>,
+    /// Margin, speed, silence, patience and its greatest.
+    numbers: [f64; 5],
     hand_overs: u32,
 }
 
 impl ShieldArguments {
+    fn new(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>, numbers: [f64; 5], hand_overs: Whole) -> PyResult<Self> {
+        let hand_overs = hand_overs.within("hand_overs", 1..=u64::from(u32::MAX))? as u32;
+        let (low, high) = (one_or_more::<3>(low, "low")?, one_or_more::<3>(high, "high")?);
+        if !(1..=ROOMS_MAX).contains(&low.len()) {
+            return Err(refused_field("low", format!("must be of 1 to {ROOMS_MAX} boxes, found {}", low.len())));
+        }
+        if low.len() != high.len() {
+            return Err(refused_field("high", format!("must be of {} boxes as low, found {}", low.len(), high.len())));
+        }
+        Ok(Self { rooms: low.into_iter().zip(high).map(<[_; 2]>::from).collect(), numbers, hand_overs })
+    }
+
+    fn settings(&self) -> Settings {
+        let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
+        let [margin, speed, silence, patience, patience_greatest] = self.numbers.map(|value| value as f32);
+        let room = |[low, high]: &[[f64; 3]; 2]| Room::new(corner(*low), corner(*high));
+        let rooms = std::array::from_fn(|number| self.rooms.get(number).map(room));
+        let hand_overs = self.hand_overs;
+        Settings { rooms, margin, speed, silence, patience, patience_greatest, hand_overs }
+    }
+
     /// As Python names it.
     fn named<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
-        named.set_item("low", self.low)?;
-        named.set_item("high", self.high)?;
-        for (name, number) in ["speed", "silence", "patience", "patience_greatest"].into_iter().zip(self.numbers) {
+        let corners = |which: usize| self.rooms.iter().map(|room| room[which]).collect::<Vec<_>>();
+        named.set_item("low", corners(0))?;
+        named.set_item("high", corners(1))?;
+        let names = ["margin", "speed", "silence", "patience", "patience_greatest"];
+        for (name, number) in names.into_iter().zip(self.numbers) {
             named.set_item(name, number)?;
         }
         named.set_item("hand_overs", self.hand_overs)?;
@@ -125,7 +153,9 @@ impl ShieldArguments {
 ///
 /// Args:
 ///     scenario: of the extended law.
-///     low, high: corners (3,) of the box to stay in, m, world.
+///     low, high: corners (3,) of the box to stay in, m, world; or (n, 3) of up to four boxes: it stays in one or
+///         another of them, and goes over where they overlap.
+///     margin: how far inside its boxes it is kept, m: as far as an estimated place may be from the true one.
 ///     speed: the greatest speed of the policy, m/s.
 ///     silence: for how long the last demand is flown if none comes, s.
 ///     patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
@@ -143,32 +173,37 @@ pub struct Shield {
 #[pymethods]
 impl Shield {
     #[new]
-    #[pyo3(signature = (scenario, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0,
-        hand_overs=Whole::new(10)),
-        text_signature = "(scenario, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0, \
-hand_overs=10)")]
+    #[pyo3(signature = (scenario, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0,
+        patience_greatest=16.0, hand_overs=Whole::new(10)),
+        text_signature = "(scenario, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0, \
+patience_greatest=16.0, hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
     fn new(
         scenario: &Bound<'_, Scenario>,
         low: &Bound<'_, PyAny>,
         high: &Bound<'_, PyAny>,
+        margin: f64,
         speed: f64,
         silence: f64,
         patience: f64,
         patience_greatest: f64,
         hand_overs: Whole,
     ) -> PyResult<Self> {
-        let hand_overs = hand_overs.within("hand_overs", 1..=u64::from(u32::MAX))? as u32;
-        let (low, high) = (row::<3>(low, "low")?, row::<3>(high, "high")?);
-        let arguments =
-            ShieldArguments { low, high, numbers: [speed, silence, patience, patience_greatest], hand_overs };
-        let start = ShieldRow::new(scenario.get(), &settings(&arguments))?;
+        let numbers = [margin, speed, silence, patience, patience_greatest];
+        let arguments = ShieldArguments::new(low, high, numbers, hand_overs)?;
+        let start = ShieldRow::new(scenario.get(), &arguments.settings())?;
         Ok(Self { scenario: scenario.clone().unbind(), arguments, one: start.clone(), start, diagnostics: None })
     }
 
     /// Another shield that remembers the same.
     fn copy(&self, py: Python<'_>) -> Self {
-        Self { scenario: self.scenario.clone_ref(py), start: self.start.clone(), one: self.one.clone(), ..*self }
+        Self {
+            scenario: self.scenario.clone_ref(py),
+            arguments: self.arguments.clone(),
+            start: self.start.clone(),
+            one: self.one.clone(),
+            diagnostics: self.diagnostics,
+        }
     }
 
     fn __copy__(&self, py: Python<'_>) -> Self {
@@ -200,6 +235,7 @@ hand_overs=10)")]
     /// Args:
     ///     state: (13,).
     ///     demand: (4,) or (5,), or None where the policy says nothing.
+    ///     acceleration: (3,), as of `Law.step`.
     ///     rotors: (4,) in place of a demand: speeds of the rotors of an X, from -1, the least, to 1, the greatest.
     ///
     /// Returns:
@@ -207,12 +243,13 @@ hand_overs=10)")]
     ///
     /// Raises:
     ///     ValueError: names the field of the state that cannot be used; nothing has changed then.
-    #[pyo3(signature = (state, demand=None, *, rotors=None))]
+    #[pyo3(signature = (state, demand=None, acceleration=None, *, rotors=None))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
         state: &Bound<'py, PyAny>,
         demand: Option<&Bound<'py, PyAny>>,
+        acceleration: Option<&Bound<'py, PyAny>>,
         rotors: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let state = measured(&row::<STATE_COLUMNS>(state, "state")?);
@@ -221,8 +258,9 @@ hand_overs=10)")]
             (None, Some(rotors)) => Some(of_rotors(&self.one.of_an_x(row::<4>(rotors, "rotors")?)?)),
             (demand, None) => demand.map(|demand| demand_row(demand, "demand")).transpose()?,
         };
+        let acceleration = acceleration.map(|given| row::<3>(given, "acceleration")).transpose()?;
         let mut next = self.one.clone();
-        let (wrench, diagnostics) = next.step(&state, demand.as_ref()).map_err(refused)?;
+        let (wrench, diagnostics) = next.step(&state, demand.as_ref(), acceleration.as_ref()).map_err(refused)?;
         (self.one, self.diagnostics) = (next, Some(diagnostics));
         Ok(PyArray1::from_slice(py, &wrench))
     }
@@ -296,16 +334,17 @@ pub struct ShieldRows {
 #[pymethods]
 impl ShieldRows {
     #[new]
-    #[pyo3(signature = (scenario, rows, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0,
-        hand_overs=Whole::new(10)),
-        text_signature = "(scenario, rows, *, low, high, speed=10.0, silence=0.1, patience=1.0, patience_greatest=16.0, \
-hand_overs=10)")]
+    #[pyo3(signature = (scenario, rows, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0,
+        patience_greatest=16.0, hand_overs=Whole::new(10)),
+        text_signature = "(scenario, rows, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0, \
+patience_greatest=16.0, hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
     fn new(
         scenario: &Bound<'_, Scenario>,
         rows: Whole,
         low: &Bound<'_, PyAny>,
         high: &Bound<'_, PyAny>,
+        margin: f64,
         speed: f64,
         silence: f64,
         patience: f64,
@@ -314,12 +353,17 @@ hand_overs=10)")]
     ) -> PyResult<Self> {
         let rows = rows.within("rows", 0..=ROWS_MAX)? as usize;
         let Shield { scenario, arguments, start, .. } =
-            Shield::new(scenario, low, high, speed, silence, patience, patience_greatest, hand_overs)?;
+            Shield::new(scenario, low, high, margin, speed, silence, patience, patience_greatest, hand_overs)?;
         Ok(Self { scenario, arguments, ones: vec![start.clone(); rows], start })
     }
 
     fn __copy__(&self, py: Python<'_>) -> Self {
-        Self { scenario: self.scenario.clone_ref(py), start: self.start.clone(), ones: self.ones.clone(), ..*self }
+        Self {
+            scenario: self.scenario.clone_ref(py),
+            arguments: self.arguments.clone(),
+            start: self.start.clone(),
+            ones: self.ones.clone(),
+        }
     }
 
     fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
@@ -357,16 +401,17 @@ hand_overs=10)")]
     }
 
     /// One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
-    /// to wrenches (rows, 4). `rotors` (rows, 4) in place of demands are speeds of the rotors of an X, from -1, the
-    /// least, to 1, the greatest.
+    /// and accelerations (rows, 3) as of `Law.step`, to wrenches (rows, 4). `rotors` (rows, 4) in place of demands are
+    /// speeds of the rotors of an X, from -1, the least, to 1, the greatest.
     ///
     /// If a state is refused, the error names the row and no row has changed.
-    #[pyo3(signature = (states, demands=None, *, rotors=None))]
+    #[pyo3(signature = (states, demands=None, accelerations=None, *, rotors=None))]
     fn step<'py>(
         &mut self,
         py: Python<'py>,
         states: &Bound<'py, PyAny>,
         demands: Option<&Bound<'py, PyAny>>,
+        accelerations: Option<&Bound<'py, PyAny>>,
         rotors: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let count = self.ones.len();
@@ -379,9 +424,11 @@ hand_overs=10)")]
             }
             (demands, None) => demands.map(|demands| demand_rows(demands, count, "demands")).transpose()?,
         };
+        let accelerations = accelerations.map(|given| rows::<3>(given, count, "accelerations")).transpose()?;
         let (ones, wrenches) = step_rows(py, &self.ones, |one, number| {
             let demand = demands.as_ref().and_then(|demands| demands.get(number));
-            one.step(&measured(&states[number]), demand).map(|(wrench, _)| wrench)
+            let acceleration = accelerations.as_ref().and_then(|accelerations| accelerations.get(number));
+            one.step(&measured(&states[number]), demand, acceleration).map(|(wrench, _)| wrench)
         })?;
         self.ones = ones;
         array(py, wrenches)

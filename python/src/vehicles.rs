@@ -1,7 +1,8 @@
 //! Rows of simulated vehicles under given wrenches, for environments.
 //!
-//! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors where the
-//! scenario has any. A row whose motion is no longer finite goes no further until it is put somewhere.
+//! Each row is the vehicle that a flight of the scenario simulates, with its own clock, and its own sensors or
+//! estimator where the scenario has any. A row whose motion is no longer finite, or whose estimator has no state to fly
+//! on, goes no further until it is put somewhere.
 //!
 //! Where nothing stands between wrench and body, the bodies of a stretch of rows move together in the processor's
 //! vector registers ([`host_sim::vehicle::plant::rows`]), to the bits that each has alone.
@@ -13,11 +14,11 @@ use crate::scenarios::Scenario;
 use crate::threads::shared;
 use crate::whole_number::Whole;
 use controller_core::state::Wrench;
-use host_sim::vehicle::SimulatedVehicle;
+use host_sim::flight::estimation::NoEstimate;
+use host_sim::flight::sensed_vehicle::{Known, SensedVehicle};
 use host_sim::vehicle::actuators::ActuatorDemand;
 use host_sim::vehicle::plant::body::Body;
 use host_sim::vehicle::plant::rows::Rows;
-use host_sim::vehicle::sensors::Sensors;
 use numpy::{PyArray1, PyArray2};
 use pulp::Arch;
 use pyo3::prelude::*;
@@ -30,37 +31,47 @@ const ROWS_PER_TASK: usize = 16;
 /// One vehicle.
 #[derive(Clone)]
 struct Row {
-    vehicle: SimulatedVehicle,
-    sensors: Option<Sensors>,
-    /// The measured state now.
+    vehicle: SensedVehicle,
+    /// The measured or estimated state now.
     measured: [f64; STATE_COLUMNS],
+    /// v' since the last tick, m/s^2, world; NaN without an accelerometer.
+    acceleration: [f64; 3],
+    /// Whether the estimate has jumped since the last tick.
+    jumped: bool,
     tick: u64,
     lost: bool,
 }
 
 impl Row {
-    fn new(scenario: &scenario::Scenario) -> Self {
-        let vehicle = SimulatedVehicle::new(scenario, &scenario.configuration);
-        let mut row =
-            Self { vehicle, sensors: Sensors::new(scenario), measured: [0.0; STATE_COLUMNS], tick: 0, lost: false };
-        row.measure();
-        row
+    fn new(scenario: &scenario::Scenario) -> Result<Self, NoEstimate> {
+        let vehicle = SensedVehicle::new(scenario, &scenario.configuration);
+        let (measured, acceleration) = ([0.0; STATE_COLUMNS], [f64::NAN; 3]);
+        let mut row = Self { vehicle, measured, acceleration, jumped: false, tick: 0, lost: false };
+        row.measure()?;
+        Ok(row)
     }
 
-    fn measure(&mut self) {
-        let state = *self.vehicle.state();
-        self.measured = match &mut self.sensors {
-            Some(sensors) => of_measured(&sensors.measure(&state)),
-            None => of_body(&state),
+    fn state(&self) -> &BodyState {
+        self.vehicle.vehicle().state()
+    }
+
+    fn measure(&mut self) -> Result<(), NoEstimate> {
+        (self.measured, self.acceleration, self.jumped) = match self.vehicle.known()? {
+            Some(Known { state, acceleration, jumped }) => {
+                let felt = acceleration.map_or([f64::NAN; 3], |felt| felt.cast().into());
+                (of_measured(&state), felt, jumped)
+            }
+            None => (of_body(self.state()), [f64::NAN; 3], false),
         };
+        Ok(())
     }
 
     /// Whether anything was clipped.
-    fn hold(&mut self, wrench: &Wrench, steps: u32) -> bool {
+    fn hold(&mut self, wrench: &Wrench) -> bool {
         if self.lost {
             return false;
         }
-        let held = self.vehicle.hold(&ActuatorDemand::Wrench(*wrench), steps);
+        let held = self.vehicle.hold(&ActuatorDemand::Wrench(*wrench));
         self.end(held.ok().map(|(clipped, _)| clipped))
     }
 
@@ -69,17 +80,14 @@ impl Row {
         if self.lost {
             return false;
         }
-        self.vehicle.place(state);
+        self.vehicle.vehicle_mut().place(state);
         self.end(state.is_finite().then_some(clipped))
     }
 
     /// Ends a period: whether anything was clipped, or nothing where the motion is no longer finite.
     fn end(&mut self, clipped: Option<bool>) -> bool {
         self.tick += 1;
-        self.lost = clipped.is_none();
-        if !self.lost {
-            self.measure();
-        }
+        self.lost = clipped.is_none() || self.measure().is_err();
         clipped.unwrap_or(false)
     }
 }
@@ -96,14 +104,14 @@ impl Stretch {
         let bare = rows.first().and_then(|row| row.vehicle.bare());
         let mut bodies = bare.map(|plant| (plant.body().clone(), Rows::new(Arch::new(), rows.len())));
         if let Some((_, bodies)) = &mut bodies {
-            rows.iter().enumerate().for_each(|(number, row)| bodies.place(number, row.vehicle.state()));
+            rows.iter().enumerate().for_each(|(number, row)| bodies.place(number, row.state()));
         }
         Self { rows, bodies }
     }
 
     fn place(&mut self, number: usize, row: Row) {
         if let Some((_, bodies)) = &mut self.bodies {
-            bodies.place(number, row.vehicle.state());
+            bodies.place(number, row.state());
         }
         self.rows[number] = row;
     }
@@ -111,7 +119,7 @@ impl Stretch {
     /// Which of them had anything clipped.
     fn hold(&mut self, wrench: &[Wrench], steps: u32) -> Vec<bool> {
         let Some((body, bodies)) = &mut self.bodies else {
-            return self.rows.iter_mut().zip(wrench).map(|(row, wrench)| row.hold(wrench, steps)).collect();
+            return self.rows.iter_mut().zip(wrench).map(|(row, wrench)| row.hold(wrench)).collect();
         };
         let command = |(number, wrench): (usize, &Wrench)| {
             let (thrust, torque, clipped) = body.clipped(wrench);
@@ -143,18 +151,42 @@ impl VehicleRows {
         &self.scenario.get().read
     }
 
-    /// Starts a row anew.
-    fn put(&mut self, number: usize, state: [f64; STATE_COLUMNS], seed: u64) {
+    /// A row that starts anew.
+    fn begun(&self, state: &[f64; STATE_COLUMNS], seed: u64) -> Result<Row, NoEstimate> {
         let mut scenario = self.read().clone();
-        scenario.initial = body(&state);
+        scenario.initial = body(state);
         if let Some(sensors) = &mut scenario.reality.sensors {
             sensors.seed = seed;
+        }
+        if let Some(estimator) = &mut scenario.reality.estimator {
+            estimator.seed = seed;
         }
         if let Some(turbulence) = scenario.reality.wind.as_mut().and_then(|wind| wind.turbulence.as_mut()) {
             turbulence.seed = seed;
         }
-        self.stretches[number / ROWS_PER_TASK].place(number % ROWS_PER_TASK, Row::new(&scenario));
-        self.starts[number] = Some((state, seed));
+        Row::new(&scenario)
+    }
+
+    /// Starts rows anew, each at a state with a seed, on all cores. If one has no estimate, no row has changed.
+    fn put(&mut self, py: Python<'_>, starts: &[(usize, [f64; STATE_COLUMNS], u64)]) -> PyResult<()> {
+        let begun: PyResult<Vec<Result<Row, NoEstimate>>> = py.detach(|| {
+            let one = |(_, state, seed): &(usize, [f64; STATE_COLUMNS], u64)| self.begun(state, *seed);
+            // An estimator is aligned for longer than it takes to wake another core.
+            if starts.len() < ROWS_PER_TASK || self.read().reality.estimator.is_none() {
+                return Ok(starts.iter().map(one).collect());
+            }
+            shared(|| starts.par_iter().map(one).collect())
+        });
+        let begun = begun?
+            .into_iter()
+            .zip(starts)
+            .map(|(row, (number, ..))| row.map_err(|problem| refused(format!("row {number}: estimator: {problem}"))));
+        let begun = begun.collect::<PyResult<Vec<Row>>>()?;
+        for (row, (number, state, seed)) in begun.into_iter().zip(starts) {
+            self.stretches[number / ROWS_PER_TASK].place(number % ROWS_PER_TASK, row);
+            self.starts[*number] = Some((*state, *seed));
+        }
+        Ok(())
     }
 
     fn rows(&self) -> impl Iterator<Item = &Row> {
@@ -168,11 +200,8 @@ impl VehicleRows {
     fn new(scenario: &Bound<'_, Scenario>, rows: Whole) -> PyResult<Self> {
         let rows = rows.within("rows", 0..=ROWS_MAX)? as usize;
         let Scenario { read, file, .. } = scenario.get();
-        if read.reality.estimator.is_some() {
-            let problem = "estimator: rows of vehicles have none; leave that section out, [sensors] may stay";
-            return Err(refused_field(file, problem));
-        }
-        let stretch = |first| Stretch::new(vec![Row::new(read); ROWS_PER_TASK.min(rows - first)]);
+        let row = Row::new(read).map_err(|problem| refused_field(file, format!("estimator: {problem}")))?;
+        let stretch = |first| Stretch::new(vec![row.clone(); ROWS_PER_TASK.min(rows - first)]);
         let stretches = (0..rows).step_by(ROWS_PER_TASK).map(stretch).collect();
         Ok(Self { scenario: scenario.clone().unbind(), count: rows, stretches, starts: vec![None; rows] })
     }
@@ -199,17 +228,16 @@ impl VehicleRows {
         self.starts.clone()
     }
 
-    fn __setstate__(&mut self, starts: Vec<Start>) -> PyResult<()> {
+    fn __setstate__(&mut self, py: Python<'_>, starts: Vec<Start>) -> PyResult<()> {
         if starts.len() != self.count {
             return Err(refused_field("starts", format!("must be {}, found {}", self.count, starts.len())));
         }
-        for (number, begun) in starts.into_iter().enumerate() {
-            if let Some((state, seed)) = begun {
-                start(&state, self.read().timing.step()).map_err(refused)?;
-                self.put(number, state, seed);
-            }
+        let begun = |(number, begun): (usize, Start)| begun.map(|(state, seed)| (number, state, seed));
+        let starts: Vec<_> = starts.into_iter().enumerate().filter_map(begun).collect();
+        for (_, state, _) in &starts {
+            start(state, self.read().timing.step()).map_err(refused)?;
         }
-        Ok(())
+        self.put(py, &starts)
     }
 
     fn __len__(&self) -> usize {
@@ -217,10 +245,12 @@ impl VehicleRows {
     }
 
     /// Starts the rows that are chosen anew at their rows of `states` (rows, 13); `seeds` (rows,) are their noise's and
-    /// turbulence's. If one is refused, the error names the row and no row has changed.
+    /// turbulence's. An estimator is aligned, in motion, for the three seconds before. If a row is refused, the error
+    /// names it and no row has changed.
     #[pyo3(signature = (states, chosen=None, seeds=None))]
     fn place(
         &mut self,
+        py: Python<'_>,
         states: &Bound<'_, PyAny>,
         chosen: Option<Vec<bool>>,
         seeds: Option<Vec<Whole>>,
@@ -240,14 +270,12 @@ impl VehicleRows {
             let start = start(&states[*number], step);
             start.map_err(|problem| refused(format!("row {number}: {problem}")))?;
         }
-        for number in chosen {
-            self.put(number, states[number], seeds[number]);
-        }
-        Ok(())
+        let starts: Vec<_> = chosen.into_iter().map(|number| (number, states[number], seeds[number])).collect();
+        self.put(py, &starts)
     }
 
     /// Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and
-    /// which rows' motion is no longer finite, each (rows,).
+    /// which rows go no further, each (rows,): their motion is no longer finite, or their estimator has no state.
     #[allow(clippy::type_complexity)] // a tuple is what Python unpacks
     fn step<'py>(
         &mut self,
@@ -271,13 +299,26 @@ impl VehicleRows {
     /// (rows, 13): the true ones.
     #[getter]
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        array(py, self.rows().map(|row| of_body(row.vehicle.state())).collect())
+        array(py, self.rows().map(|row| of_body(row.state())).collect())
     }
 
-    /// (rows, 13): the measured states, by the scenario's `[sensors]`; without that section the true ones.
+    /// (rows, 13): the states that a controller gets: measured, by the scenario's `[sensors]`, or estimated, by its
+    /// `[estimator]`; without either section the true ones.
     #[getter]
     fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array(py, self.rows().map(|row| row.measured).collect())
+    }
+
+    /// (rows, 3): the acceleration since the last period by an accelerometer, m/s^2, world; NaN without one.
+    #[getter]
+    fn accelerations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array(py, self.rows().map(|row| row.acceleration).collect())
+    }
+
+    /// (rows,) bool: whether the estimated state has jumped since the last period, by a pose and not by motion.
+    #[getter]
+    fn jumped<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_vec(py, self.rows().map(|row| row.jumped).collect())
     }
 
     /// (rows, 19): the scenario's, each at its row's own time.

@@ -94,8 +94,6 @@ def test_an_episode_that_ended_starts_anew_with_the_next_step():
 
 
 def test_what_cannot_be_is_refused():
-    with pytest.raises(ValueError, match="estimator: rows of vehicles have none"):
-        VectorEnvironment(HUMMINGBIRD.edited({"estimator": {}}), 2)
     with pytest.raises(ValueError, match='start: must be "random" or "scenario"'):
         VectorEnvironment(HUMMINGBIRD, 2, start="here")
     with pytest.raises(ValueError, match="lost: must be greater than zero"):

@@ -1,15 +1,18 @@
-"""The example that learns: a short form of it learns measurably, and the shield keeps what it promises meanwhile."""
+"""The examples that learn and judge: a short form learns measurably, and the shield keeps what it promises meanwhile."""
 
-import runpy
+import sys
 
 import numpy as np
 import pytest
 import saturated_hybrid as sh
 from conftest import TOP
 from saturated_hybrid.actions import facing, kinds
-from saturated_hybrid.tasks import POINT, HoverRows
+from saturated_hybrid.tasks import POINT, GateRows, HoverRows
 
-LEARN = runpy.run_path(str(TOP / "python" / "examples" / "learn.py"))
+sys.path.insert(0, str(TOP / "python" / "examples"))
+import judge  # noqa: E402
+import learn  # noqa: E402
+import learn_vehicles  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +20,7 @@ def learnt(tmp_path_factory):
     """Sixteen generations with the shield and sixteen without, which then has hardly begun to learn; and a short
     table."""
     out = tmp_path_factory.mktemp("learnt")
-    curves, table = LEARN["main"](["hover", "--out", str(out), "--generations", "16", "--episodes", "50"])
+    curves, table = learn.main(["hover", "--out", str(out), "--generations", "16", "--episodes", "50"])
     return out, curves, table
 
 
@@ -25,7 +28,7 @@ def test_it_learns_measurably_behind_the_shield(learnt):
     _, curves, table = learnt
     earned = curves["with the shield"][:, 1]
     assert earned[-1] > earned[0] + 60.0, earned
-    flew = {name: row["by_policy"] for name, shield, row in table if shield}
+    flew = {name: row["by_policy"] for name, shield, row in table if shield == "box"}
     assert flew["learnt with the shield"] > flew["as it starts"] + 0.1
 
 
@@ -35,17 +38,17 @@ def test_behind_the_shield_nothing_is_lost_from_the_first_episode_on(learnt):
     names = {name for name, _, _ in table}
     assert names == {"as it starts", "learnt with the shield", "learnt without", "spring and damper", "malicious"}
     for name, shield, row in table:
-        if shield:
-            assert (row["crashed"], row["lost"], row["clipped"]) == (0, 0, 0.0), (name, row)
-            assert row["farthest"] < 0.05, (name, row)
+        if shield == "box":
+            assert (row["crashed"], row["lost"], row["clipped"], row["out"]) == (0, 0, 0.0, 0), (name, row)
+            assert row["nearest"] > 0.0, (name, row)
     malicious = {shield: row for name, shield, row in table if name == "malicious"}
-    assert malicious[False]["crashed"] > 5 and malicious[False]["lost"] > 20 and malicious[False]["clipped"] > 0.2
-    assert malicious[True]["by_policy"] < 0.9
+    assert malicious["no"]["crashed"] > 5 and malicious["no"]["lost"] > 20 and malicious["no"]["clipped"] > 0.2
+    assert malicious["box"]["by_policy"] < 0.9
 
 
 def test_the_file_of_weights_is_the_network_that_boards_run(learnt):
     out, _, _ = learnt
-    theirs, ours = sh.Network.read(out / "hover.toml"), LEARN["Network"].read(out / "hover.toml")
+    theirs, ours = sh.Network.read(out / "hover.toml"), judge.Network.read(out / "hover.toml")
     observations = np.random.default_rng(3).normal(size=(20, 22)).astype(np.float32)
     assert np.allclose(theirs.act(observations), ours.act(observations), atol=1e-5)
     assert np.ptp(theirs.act(observations), axis=0).min() > 0.01
@@ -62,10 +65,38 @@ def test_curves_pictures_and_replay_are_written(learnt):
 
 def test_a_network_of_a_batch_is_each_of_its_networks():
     random = np.random.default_rng(1)
-    weights, observations = random.normal(size=(3, LEARN["Network"].count)), random.normal(size=(3, 5, 22))
-    together = LEARN["Network"](weights).act(observations)
+    weights, observations = random.normal(size=(3, judge.Network.count)), random.normal(size=(3, 5, 22))
+    together = judge.Network(weights).act(observations)
     for one, seen, acted in zip(weights, observations, together):
-        assert np.allclose(LEARN["Network"](one).act(seen), acted, atol=1e-6)
+        assert np.allclose(judge.Network(one).act(seen), acted, atol=1e-6)
+
+
+def test_on_the_boards_estimator_no_hover_leaves_its_box(learnt):
+    out, _, _ = learnt
+    network = judge.Network.read(out / "hover.toml")
+    for poses in (True, judge.LATE):
+        for policy in (network, judge.Malicious(40, 1)):
+            seen = judge.Flights("hover", 40, HoverRows.box, estimated=poses).fly(policy.act, list(range(40)))
+            assert not seen["lost"].any() and not seen["clipped"].any() and seen["out"].max() < 0.0
+
+
+def test_behind_the_boxes_of_the_gate_no_policy_flies_into_its_wall(learnt):
+    """The wall is not part of one box, and malicious policies fly into it there."""
+    lost = {}
+    for name, box in (("box", judge.ROOM), ("boxes", GateRows.box)):
+        seen = judge.Flights("gate", 100, box).fly(judge.Malicious(100, 1).act, list(range(100)))
+        lost[name] = int(seen["lost"].sum())
+        assert not seen["clipped"].any()
+    assert lost["boxes"] == 0 and lost["box"] > 0, lost
+    flights = judge.Flights("gate", 50, GateRows.box)
+    seen = flights.fly(judge.Spring().act, list(range(50)))
+    assert not seen["lost"].any() and flights.environment.through.mean() > 0.9
+
+
+def test_every_vehicle_learns_for_a_moment():
+    table = learn_vehicles.main(["--generations", "1", "--episodes", "4", "--seeds", "1"])
+    assert [row[:2] for row in table] == [("Hummingbird", 1), ("x500", 1), ("Crazyflie", 1)]
+    assert all(row[2] == row[6] == row[7] == 0 for row in table), table
 
 
 def test_the_policy_that_was_learnt_and_ships_hovers_as_boards_would_fly_it():
@@ -74,7 +105,7 @@ def test_the_policy_that_was_learnt_and_ships_hovers_as_boards_would_fly_it():
     tasks = HoverRows(None, 100)
     tasks.reset(seed=10_000)
     scenario, states = tasks.scenario, tasks.vehicles.states
-    vehicles, shield = sh.VehicleRows(scenario, 100), sh.ShieldRows(scenario, 100, **LEARN["BOX"])
+    vehicles, shield = sh.VehicleRows(scenario, 100), sh.ShieldRows(scenario, 100, **HoverRows.box)
     vehicles.place(states)
     headings, outputs, goals, flown = facing(states), np.zeros((100, 4), np.float32), np.tile(POINT, (100, 1)), []
     for _ in range(600):

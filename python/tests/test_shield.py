@@ -174,7 +174,12 @@ def test_a_state_that_cannot_be_used_changes_nothing():
             lambda: sh.Shield(sh.Scenario.built_in("paper"), **BOX),
             'control.law: must be "extended": the paper\'s law carries no policy',
         ),
-        (lambda: sh.Shield(SCENARIO, low=[0, 0, 0], high=[1, 1, 0.5]), "shield.high - shield.low: must be at least 1"),
+        (lambda: sh.Shield(SCENARIO, low=[0, 0, 0], high=[1, 1, 0.5]), "shield.high - shield.low: must be at least 0.6"),
+        (lambda: sh.Shield(SCENARIO, low=[[0, 0, 0]] * 5, high=[[1, 1, 1]] * 5), "low: must be of 1 to 4 boxes, found 5"),
+        (lambda: sh.Shield(SCENARIO, low=[[0, 0, 0]] * 2, high=[1, 1, 1]), "high: must be of 2 boxes as low, found 1"),
+        (lambda: sh.Shield(SCENARIO, low=[[0, 0]], high=[1, 1, 1]), r"low: must have shape \(3,\) or \(n, 3\)"),
+        (lambda: sh.Shield(SCENARIO, **BOX, margin=-0.1), "shield.margin: must be at least 0"),
+        (lambda: sh.Shield(SCENARIO, **BOX, margin=3.0), "shield.high - shield.low: must be at least 6.6"),
         (lambda: sh.Shield(SCENARIO, low=[0, 0, np.nan], high=[1, 1, 1]), "shield.low: must be a finite number"),
         (lambda: sh.Shield(SCENARIO, low=[0, 0, 0], high=[1e6, 1, 1]), "shield.high: must be at most 100000"),
         (lambda: sh.Shield(SCENARIO, **BOX, silence=-1), "shield.silence: must be greater than zero"),
@@ -237,3 +242,30 @@ def test_a_network_flies_to_its_goal_and_is_what_numpy_makes_of_its_file():
 def test_a_network_that_makes_no_sense_is_refused_by_name(call, said):
     with pytest.raises(ValueError, match=said):
         call()
+
+
+def test_a_vehicle_stays_in_one_or_another_of_its_boxes_and_goes_over_where_they_overlap():
+    low, high = [[-4, -4, 0.5], [-2, -0.4, 2.6], [0.1, -4, 0.5]], [[-0.1, 4, 6], [2, 0.4, 3.4], [4, 4, 6]]
+    vehicle, shield = sh.VehicleRows(SCENARIO, 1), sh.ShieldRows(SCENARIO, 1, low=low, high=high)
+    vehicle.place([sh.state([-2.0, 0.0, 3.0])])
+    states, reasons, by_policy = flown(shield, vehicle, lambda tick, state: towards(state, [2.0, 0.0, 3.0]), 600)
+    assert by_policy.all() and states[-1, 0] > 1.5 and set(reasons) == {""}
+    # Beside the opening there is a wall, which the vehicle does not come to.
+    shield.reset()
+    vehicle.place([sh.state([-2.0, 2.0, 3.0])])
+    states, reasons, by_policy = flown(shield, vehicle, lambda tick, state: towards(state, [2.0, 2.0, 3.0]), 600)
+    assert states[:, 0].max() < -0.1 and "stop" in reasons and not by_policy.all()
+
+
+def towards(state, place):
+    """The demand of a spring and a damper."""
+    return [*(np.clip(1.0 * (np.array(place) - state[:3]), -1.5, 1.5) - 2.0 * state[3:6]), 0.0]
+
+
+def test_a_margin_keeps_the_vehicle_that_much_farther_inside():
+    nearest = {}
+    for margin in (0.0, 0.3):
+        shield, vehicle = started(margin=margin)
+        states, _, _ = flown(shield, vehicle, lambda tick, state: towards(state, [9.0, 0.0, 3.0]), 700)
+        nearest[margin] = BOX["high"][0] - states[:, 0].max()
+    assert nearest[0.0] > 0.0 and 0.25 < nearest[0.3] - nearest[0.0] < 0.35, nearest

@@ -7,7 +7,7 @@
 //! | [`Reason::Tilt`] | the thrust axis is farther from the wanted one than [`TILT_MAX_RAD`] | 60 degrees | thrust along u is then half; beyond a right angle none is left |
 //! | [`Reason::Rate`] | the body turns about the tilt's axes faster than 1.15 Omega + sqrt(2 TILT_MAX_RAD M_theta / J), or about z faster than [`YAW_RATE_SHARE_MAX`] W_max | | M_theta stops such a turn within [`TILT_MAX_RAD`]; 1.15 Omega is the frame's own |
 //! | [`Reason::Speed`] | faster than `speed` | 10 m/s | chosen; a shield's settings change it |
-//! | [`Reason::Stop`] | a place of the [`StoppingForecast`] is outside the box | | the law would not stop inside any more |
+//! | [`Reason::Stop`] | no room holds all places of the [`StoppingForecast`] | | the law would not stop inside any more |
 //! | [`Reason::Estimate`] | force or thrust scale at a level, held, or the force more than thrust holds, for longer than [`DOUBT_MAX_S`] | 1 s | the levels for stopping count on them |
 
 use super::Settings;
@@ -34,7 +34,6 @@ pub const DOUBT_MAX_S: f32 = 1.0;
 /// The rules with their numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Monitor {
-    settings: Settings,
     /// Squares of the greatest rate about the tilt's axes, rad^2/s^2, and of the greatest speed, m^2/s^2.
     rate: f32,
     speed: f32,
@@ -48,7 +47,6 @@ impl Monitor {
         let rate =
             FRAME_RATE_SHARE_MAX * parameters.turn_rate + math::sqrt(2.0 * TILT_MAX_RAD * parameters.m_tilt / inertia);
         Self {
-            settings: *settings,
             rate: rate * rate,
             speed: settings.speed * settings.speed,
             yaw_rate: YAW_RATE_SHARE_MAX * parameters.yaw_rate,
@@ -57,19 +55,19 @@ impl Monitor {
 
     /// Other settings from now on.
     pub fn set_settings(&mut self, settings: &Settings) {
-        self.settings = *settings;
         self.speed = settings.speed * settings.speed;
     }
 
-    /// What speaks against the policy; `doubtful`, for how long an estimate was in doubt, s.
-    pub fn violation(&self, state: &State, prospect: &StoppingForecast, doubtful: f32) -> Option<Reason> {
+    /// What speaks against the policy: `inside` says whether a room holds the whole prospect, `doubtful` for how long
+    /// an estimate was in doubt, s.
+    pub fn violation(&self, state: &State, prospect: &StoppingForecast, inside: bool, doubtful: f32) -> Option<Reason> {
         // Comparisons as they are: one with a NaN is against.
         let w = &state.angular_velocity;
         let fine = [
             (prospect.alignment >= TILT_COSINE_MIN, Reason::Tilt),
             (w.x * w.x + w.y * w.y <= self.rate && w.z.abs() <= self.yaw_rate, Reason::Rate),
             (state.velocity.norm_squared() <= self.speed, Reason::Speed),
-            (prospect.places.iter().all(|place| self.settings.contain(place)), Reason::Stop),
+            (inside, Reason::Stop),
             (doubtful <= DOUBT_MAX_S, Reason::Estimate),
         ];
         fine.iter().find(|(fine, _)| !fine).map(|(_, reason)| *reason)

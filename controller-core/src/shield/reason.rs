@@ -10,7 +10,7 @@ pub enum Reason {
     Silent,
     /// A demand that is not finite, out of range or not a rotation.
     Demand,
-    /// The vehicle could soon no longer stop inside the box.
+    /// The vehicle could soon no longer stop inside a room.
     Stop,
     /// Too fast.
     Speed,

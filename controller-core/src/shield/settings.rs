@@ -1,26 +1,23 @@
-//! What the user of a shield decides: the box, and the numbers of the rules that concern time and speed.
+//! What the user of a shield decides: the rooms to stay in, and the numbers of the rules that concern time and speed.
 
-use crate::error::{ParameterError, Reason, require, require_positive};
+use super::room::Room;
+use crate::error::{ParameterError, Reason, require, require_finite, require_positive};
 use crate::math;
-use crate::state::check_vectors;
 use nalgebra::Vector3;
 
-/// The least side of the box, m.
-pub const BOX_SIDE_MIN_M: f32 = 1.0;
+/// The greatest number of rooms.
+pub const ROOMS_MAX: usize = 4;
 
-/// The farthest corner of a box, m.
-const BOX_CORNER_MAX_M: f32 = 1e5;
-
-/// How far inside the box refuges are, m.
-const REFUGE_INSET_M: f32 = 0.25;
+/// The greatest margin along walls, m.
+const MARGIN_MAX_M: f32 = 100.0;
 
 /// The settings. World frame, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// The lower corner of the box that the vehicle has to stay in, m: the least height included.
-    pub low: Vector3<f32>,
-    /// The upper corner, m.
-    pub high: Vector3<f32>,
+    /// The rooms, of which the vehicle has to stay in one or another. Where two overlap it goes from one to the other.
+    pub rooms: [Option<Room>; ROOMS_MAX],
+    /// How far inside its rooms a vehicle is kept, m: as far as its estimated place may be from the true one.
+    pub margin: f32,
     /// The greatest speed of a policy, m/s.
     pub speed: f32,
     /// For how long the last demand is flown if none comes, s.
@@ -35,9 +32,17 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The usual settings for a box.
+    /// The usual settings for one room.
     pub const fn new(low: Vector3<f32>, high: Vector3<f32>) -> Self {
-        Self { low, high, speed: 10.0, silence: 0.1, patience: 1.0, patience_greatest: 16.0, hand_overs: 10 }
+        Self {
+            rooms: [Some(Room::new(low, high)), None, None, None],
+            margin: 0.0,
+            speed: 10.0,
+            silence: 0.1,
+            patience: 1.0,
+            patience_greatest: 16.0,
+            hand_overs: 10,
+        }
     }
 
     /// Checks them.
@@ -45,16 +50,11 @@ impl Settings {
     /// # Errors
     /// Names the first setting that makes no sense.
     pub fn check(&self) -> Result<(), ParameterError> {
-        for (corner, field) in [(&self.low, "shield.low"), (&self.high, "shield.high")] {
-            require(corner.iter().all(|place| place.is_finite()), field, Reason::NotFinite)?;
-            require(
-                check_vectors(&[(corner, BOX_CORNER_MAX_M, field)]).is_ok(),
-                field,
-                Reason::Above(BOX_CORNER_MAX_M),
-            )?;
-        }
-        let min = (self.high - self.low).min();
-        require(min >= BOX_SIDE_MIN_M, "shield.high - shield.low", Reason::Below(BOX_SIDE_MIN_M))?;
+        require_finite(self.margin, "shield.margin")?;
+        require(self.margin >= 0.0, "shield.margin", Reason::Below(0.0))?;
+        require(self.margin <= MARGIN_MAX_M, "shield.margin", Reason::Above(MARGIN_MAX_M))?;
+        require(self.rooms.iter().any(Option::is_some), "shield.rooms", Reason::TooFew(1))?;
+        self.rooms.iter().flatten().try_for_each(|room| room.check(self.margin))?;
         for (value, field) in [
             (self.speed, "shield.speed"),
             (self.silence, "shield.silence"),
@@ -72,17 +72,22 @@ impl Settings {
         math::min(self.patience * doubled, self.patience_greatest)
     }
 
-    /// The place nearest to `place` in the box, less a quarter of a metre.
-    pub fn refuge(&self, place: &Vector3<f32>) -> Vector3<f32> {
-        let axis = |place: f32, low: f32, high: f32| math::clamp(place, low + REFUGE_INSET_M, high - REFUGE_INSET_M);
-        let (low, high) = (&self.low, &self.high);
-        Vector3::new(axis(place.x, low.x, high.x), axis(place.y, low.y, high.y), axis(place.z, low.z, high.z))
+    /// A room without its margin in which all of these places are: `last` if it is one, or else the first.
+    pub fn room_of(&self, places: &[Vector3<f32>], last: Option<&Room>) -> Option<Room> {
+        let holds = |room: &Room| places.iter().all(|place| room.contains(place));
+        last.copied().filter(holds).or_else(|| self.within().find(holds))
     }
 
-    /// Whether `place` is in the box.
-    pub fn contain(&self, place: &Vector3<f32>) -> bool {
-        // Not a comparison that a NaN passes.
-        let inside = |(place, (low, high)): (&f32, (&f32, &f32))| low <= place && place <= high;
-        place.iter().zip(self.low.iter().zip(self.high.iter())).all(inside)
+    /// The room without its margin that is nearest to `place`. None of settings that have no room.
+    pub fn nearest_room(&self, place: &Vector3<f32>) -> Option<Room> {
+        let nearer = |best: Option<(Room, f32)>, room: Room| {
+            let distance = room.distance(place);
+            best.filter(|(_, least)| *least <= distance).or(Some((room, distance)))
+        };
+        self.within().fold(None, nearer).map(|(room, _)| room)
+    }
+
+    fn within(&self) -> impl Iterator<Item = Room> + '_ {
+        self.rooms.iter().flatten().map(|room| room.within(self.margin))
     }
 }

@@ -2,6 +2,7 @@
 
 extern crate std;
 use super::heading::HeadingGenerator;
+use super::settings::ROOMS_MAX;
 use super::*;
 use crate::extended::actuators::ActuatorParameters;
 use crate::extended::tests::Random;
@@ -15,8 +16,10 @@ const MIDDLE: Vector3<f32> = Vector3::new(0.0, 0.0, 3.0);
 const HOVER: Demand = Demand::Acceleration { acceleration: Vector3::new(0.0, 0.0, 0.0), yaw_rate: 0.0 };
 const NONSENSE: Demand = Demand::Acceleration { acceleration: Vector3::new(f32::NAN, 0.0, 0.0), yaw_rate: 0.0 };
 
+const ROOM: Room = Room::new(Vector3::new(-4.0, -4.0, 0.5), Vector3::new(4.0, 4.0, 6.0));
+
 fn settings() -> Settings {
-    Settings::new(Vector3::new(-4.0, -4.0, 0.5), Vector3::new(4.0, 4.0, 6.0))
+    Settings::new(ROOM.low, ROOM.high)
 }
 
 fn bounds() -> ReferenceBounds {
@@ -197,15 +200,77 @@ fn after_a_reset_nothing_is_left_but_the_heading() {
     assert_eq!(shield, fresh);
 }
 
+/// Two rooms with a wall between them and a corridor through it.
+fn rooms_and_corridor() -> Settings {
+    let [first, second] = [(-4.0, -0.1), (0.1, 4.0)]
+        .map(|(from, to)| Room::new(Vector3::new(from, -4.0, 0.5), Vector3::new(to, 4.0, 6.0)));
+    let corridor = Room::new(Vector3::new(-2.0, -0.4, 2.6), Vector3::new(2.0, 0.4, 3.4));
+    Settings { rooms: [Some(first), Some(corridor), Some(second), None], ..settings() }
+}
+
+#[test]
+fn a_policy_flies_where_one_room_holds_all_of_the_prospect_and_not_where_two_hold_parts() {
+    let moving = |x: f32, y: f32, speed: [f32; 3]| State { velocity: speed.into(), ..resting(Vector3::new(x, y, 3.0)) };
+    for (state, reason) in [
+        (moving(-2.0, 1.0, [0.0, 0.0, 0.0]), None),
+        (moving(2.0, 1.0, [0.0, 0.0, 0.0]), None),
+        (moving(0.0, 0.0, [0.0, 0.0, 0.0]), None),
+        (moving(-0.5, 0.0, [1.0, 0.0, 0.0]), None),
+        // In the wall; into the wall beside the corridor; out of the corridor into the wall.
+        (moving(0.0, 1.0, [0.0, 0.0, 0.0]), Some(Reason::Stop)),
+        (moving(-0.5, 1.0, [2.0, 0.0, 0.0]), Some(Reason::Stop)),
+        (moving(0.0, 0.3, [0.0, 1.0, 0.0]), Some(Reason::Stop)),
+        // All places are in some room, yet not all in one.
+        (moving(-0.3, 0.35, [2.0, 1.5, 0.0]), Some(Reason::Stop)),
+    ] {
+        let (mut law, mut shield) = shielded(&rooms_and_corridor());
+        let flown = shield.step(&mut law, &state, Some(&HOVER)).unwrap();
+        assert_eq!(flown.reason, reason, "{state:?}");
+    }
+}
+
+#[test]
+fn the_refuge_is_in_the_room_that_held_the_vehicle_last() {
+    let (mut law, mut shield) = shielded(&rooms_and_corridor());
+    let mut refuge = |x: f32, y: f32, vx: f32| {
+        let state = State { velocity: Vector3::new(vx, 0.0, 0.0), ..resting(Vector3::new(x, y, 3.0)) };
+        let flown = shield.step(&mut law, &state, Some(&HOVER)).unwrap();
+        (flown.reason, flown.reference.position.x)
+    };
+    // Through the corridor, in which the first room still holds it at first and the second soon does.
+    assert_eq!(refuge(-1.0, 0.0, 0.0), (None, -1.0));
+    assert_eq!(refuge(0.0, 0.0, 0.0), (None, 0.0));
+    assert_eq!(refuge(1.0, 0.0, 0.0), (None, 1.0));
+    assert_eq!(refuge(1.5, 2.0, 0.0), (None, 1.5));
+    // Back to the wall: the law stays on this side of it.
+    assert_eq!(refuge(0.2, 2.0, -3.0), (Some(Reason::Stop), 0.35));
+}
+
+#[test]
+fn a_margin_makes_every_room_smaller() {
+    for (place, reason) in [(3.6, None), (3.8, Some(Reason::Stop))] {
+        let (mut law, mut shield) = shielded(&Settings { margin: 0.3, ..settings() });
+        let state = resting(Vector3::new(place, 0.0, 3.0));
+        let flown = shield.step(&mut law, &state, Some(&HOVER)).unwrap();
+        assert_eq!((flown.reason, flown.reference.position.x), (reason, 3.45));
+    }
+}
+
 #[test]
 fn settings_that_make_no_sense_are_refused_by_name() {
     let good = settings();
     let corner = |x| Vector3::new(x, 0.0, 0.0);
+    let Room { low, high } = ROOM;
+    let roomed = |low, high| Settings { rooms: [Some(ROOM), None, Some(Room::new(low, high)), None], ..good };
     for (settings, field) in [
-        (Settings { low: corner(f32::NAN), ..good }, "shield.low"),
-        (Settings { high: corner(f32::INFINITY), ..good }, "shield.high"),
-        (Settings { high: corner(2e5), ..good }, "shield.high"),
-        (Settings { high: good.low + Vector3::new(5.0, 0.9, 5.0), ..good }, "shield.high - shield.low"),
+        (roomed(corner(f32::NAN), high), "shield.low"),
+        (roomed(low, corner(f32::INFINITY)), "shield.high"),
+        (roomed(low, corner(2e5)), "shield.high"),
+        (roomed(low, low + Vector3::new(5.0, 0.59, 5.0)), "shield.high - shield.low"),
+        (Settings { margin: 2.5, ..good }, "shield.high - shield.low"),
+        (Settings { margin: -0.1, ..good }, "shield.margin"),
+        (Settings { margin: f32::NAN, ..good }, "shield.margin"),
+        (Settings { rooms: [None; ROOMS_MAX], ..good }, "shield.rooms"),
         (Settings { speed: 0.0, ..good }, "shield.speed"),
         (Settings { silence: f32::NAN, ..good }, "shield.silence"),
         (Settings { patience: -1.0, ..good }, "shield.patience"),

@@ -251,12 +251,16 @@ class Law:
         """Another law that remembers the same."""
     def reset(self) -> None:
         """Everything forgotten: how a flight begins."""
-    def step(self, state: ArrayLike, reference: ArrayLike) -> NDArray[np.float32]:
+    def step(
+        self, state: ArrayLike, reference: ArrayLike, acceleration: ArrayLike | None = None
+    ) -> NDArray[np.float32]:
         """One control tick.
 
         Args:
             state: (13,).
             reference: (19,).
+            acceleration: (3,), since the last tick, by an accelerometer, m/s^2, world: the law's estimates then rest on it. NaN,
+                or left out: there is none.
 
         Returns:
             The wrench (4,), N and N m, not clipped to any limit. `for_rotors` says what to ask the rotors for.
@@ -293,8 +297,11 @@ class LawRows:
     def __deepcopy__(self, _memo: Any, /) -> Self: ...
     def reset(self, chosen: Sequence[bool] | None = None) -> None:
         """Resets the rows that are chosen, (rows,) bool; all of them if none are given."""
-    def step(self, states: ArrayLike, references: ArrayLike) -> NDArray[np.float32]:
-        """One tick of every row: states (rows, 13), references (rows, 19), to wrenches (rows, 4).
+    def step(
+        self, states: ArrayLike, references: ArrayLike, accelerations: ArrayLike | None = None
+    ) -> NDArray[np.float32]:
+        """One tick of every row: states (rows, 13), references (rows, 19), and accelerations (rows, 3) as of `Law.step`, to
+        wrenches (rows, 4).
 
         If one is refused, the error names the row and no row has changed.
         """
@@ -314,7 +321,9 @@ class Shield:
 
     Args:
         scenario: of the extended law.
-        low, high: corners (3,) of the box to stay in, m, world.
+        low, high: corners (3,) of the box to stay in, m, world; or (n, 3) of up to four boxes: it stays in one or another of
+            them, and goes over where they overlap.
+        margin: how far inside its boxes it is kept, m: as far as an estimated place may be from the true one.
         speed: the greatest speed of the policy, m/s.
         silence: for how long the last demand is flown if none comes, s.
         patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
@@ -328,6 +337,7 @@ class Shield:
         *,
         low: ArrayLike,
         high: ArrayLike,
+        margin: float = 0.0,
         speed: float = 10.0,
         silence: float = 0.1,
         patience: float = 1.0,
@@ -341,13 +351,19 @@ class Shield:
     def ask_again(self) -> None:
         """Counts hand-overs anew: the policy may fly again."""
     def step(
-        self, state: ArrayLike, demand: ArrayLike | None = None, *, rotors: ArrayLike | None = None
+        self,
+        state: ArrayLike,
+        demand: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        *,
+        rotors: ArrayLike | None = None,
     ) -> NDArray[np.float32]:
         """One control tick.
 
         Args:
             state: (13,).
             demand: (4,) or (5,), or None where the policy says nothing.
+            acceleration: (3,), as of `Law.step`.
             rotors: (4,) in place of a demand: speeds of the rotors of an X, from -1, the least, to 1, the greatest.
 
         Returns:
@@ -400,6 +416,7 @@ class ShieldRows:
         *,
         low: ArrayLike,
         high: ArrayLike,
+        margin: float = 0.0,
         speed: float = 10.0,
         silence: float = 0.1,
         patience: float = 1.0,
@@ -415,11 +432,16 @@ class ShieldRows:
     def ask_again(self, chosen: Sequence[bool] | None = None) -> None:
         """As `Shield.ask_again`, of the rows that are chosen."""
     def step(
-        self, states: ArrayLike, demands: ArrayLike | None = None, *, rotors: ArrayLike | None = None
+        self,
+        states: ArrayLike,
+        demands: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        *,
+        rotors: ArrayLike | None = None,
     ) -> NDArray[np.float32]:
         """One tick of every row: states (rows, 13), demands (rows, 4) or (rows, 5), or None where no policy says anything,
-        to wrenches (rows, 4). `rotors` (rows, 4) in place of demands are speeds of the rotors of an X, from -1, the
-        least, to 1, the greatest.
+        and accelerations (rows, 3) as of `Law.step`, to wrenches (rows, 4). `rotors` (rows, 4) in place of demands are
+        speeds of the rotors of an X, from -1, the least, to 1, the greatest.
 
         If a state is refused, the error names the row and no row has changed.
         """
@@ -770,16 +792,24 @@ class VehicleRows:
         self, states: ArrayLike, chosen: Sequence[bool] | None = None, seeds: Sequence[int] | None = None
     ) -> None:
         """Starts the rows that are chosen anew at their rows of `states` (rows, 13); `seeds` (rows,) are their noise's and
-        turbulence's. If one is refused, the error names the row and no row has changed."""
+        turbulence's. An estimator is aligned, in motion, for the three seconds before. If a row is refused, the error names it
+        and no row has changed."""
     def step(self, wrenches: ArrayLike) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and which
-        rows' motion is no longer finite, each (rows,)."""
+        rows go no further, each (rows,): their motion is no longer finite, or their estimator has no state."""
     @property
     def states(self) -> NDArray[np.float64]:
         """(rows, 13): the true ones."""
     @property
     def measured(self) -> NDArray[np.float64]:
-        """(rows, 13): the measured states, by the scenario's `[sensors]`; without that section the true ones."""
+        """(rows, 13): the states that a controller gets: measured, by the scenario's `[sensors]`, or estimated, by its
+        `[estimator]`; without either section the true ones."""
+    @property
+    def accelerations(self) -> NDArray[np.float64]:
+        """(rows, 3): the acceleration since the last period by an accelerometer, m/s^2, world; NaN without one."""
+    @property
+    def jumped(self) -> NDArray[np.bool_]:
+        """(rows,) bool: whether the estimated state has jumped since the last period, by a pose and not by motion."""
     @property
     def references(self) -> NDArray[np.float32]:
         """(rows, 19): the scenario's, each at its row's own time."""

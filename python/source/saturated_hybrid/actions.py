@@ -114,7 +114,7 @@ class Direct:
         """Where "forward" is."""
         return facing(states)
 
-    def step(self, states, demands):
+    def step(self, vehicles, demands):
         return demands
 
     def reset(self, chosen):
@@ -130,8 +130,8 @@ class Unshielded(Direct):
     def __init__(self, scenario, rows):
         self.controller = Textbook(scenario, rows)
 
-    def step(self, states, demands):
-        return self.controller.step(states, demands)
+    def step(self, vehicles, demands):
+        return self.controller.step(vehicles.measured, demands)
 
     def reset(self, chosen):
         self.controller.reset(chosen)
@@ -147,9 +147,13 @@ class Shielded(Direct):
     def headings(self, states):
         return np.where(self.fresh[:, None], facing(states), self.shield.references[:, 15:17])
 
-    def step(self, states, demands):
+    def step(self, vehicles, demands):
         self.fresh[:] = False
-        return self.shield.for_rotors(self.shield.step(states, demands))
+        jumped = vehicles.jumped
+        if jumped.any():
+            self.shield.hold_estimates(jumped.tolist())
+        wrenches = self.shield.step(vehicles.measured, demands, vehicles.accelerations)
+        return self.shield.for_rotors(wrenches)
 
     def reset(self, chosen):
         self.shield.reset(chosen.tolist())

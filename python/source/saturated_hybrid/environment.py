@@ -48,8 +48,9 @@ class Task:
     """What an environment wants of its agent: a subclass of `Environment` or `VectorEnvironment` may define any of
     these.
 
-    `rows` are the 32 columns that the module lists, as measured, in the last axis: (32,) of an `Environment`,
-    (num_envs, 32) of a `VectorEnvironment`. A text that writes `rows[..., column]` serves both.
+    `rows` are the 32 columns that the module lists, in the last axis: (32,) of an `Environment`, (num_envs, 32) of a
+    `VectorEnvironment`. A text that writes `rows[..., column]` serves both. An observation gets the state as it is measured
+    or estimated, the rest the true one.
     """
 
     def observation(self, rows):
@@ -95,7 +96,7 @@ class VectorEnvironment(Task, spaces.Many):
     reward is zero then.
 
     Args:
-        scenario: vehicle, rotors, air, sensors, reference, duration and rate. `[estimator]` is refused.
+        scenario: vehicle, rotors, air, sensors or estimator, reference, duration and rate.
         num_envs: rows.
         start: "random" (any attitude, up to 10 m from the reference, up to 15 rad/s) or "scenario" (its own).
         lost: distance from the reference, m, at which an episode is over.

@@ -50,7 +50,7 @@ class Rows:
         """As many numbers as the task's first observation has."""
         if self.generators is None:
             self.vehicles.place(np.tile(self.scenario.initial, (self.count, 1)))
-            self.ask("begun", self.rows(), np.ones(self.count, bool))
+            self.ask("begun", self.true_rows(), np.ones(self.count, bool))
         infinite = np.full(self.observe(self.rows()).shape[1:], np.inf, np.float32)
         return spaces.Box(-infinite, infinite, dtype=np.float32)
 
@@ -67,8 +67,12 @@ class Rows:
             raise ValueError(f"{name}: must have shape {wanted}, found {found}")
         return answer
 
-    def rows(self):
-        return np.concatenate([self.vehicles.measured, self.vehicles.references], axis=1, dtype=np.float32)
+    def rows(self, states=None):
+        states = self.vehicles.measured if states is None else states
+        return np.concatenate([states, self.vehicles.references], axis=1, dtype=np.float32)
+
+    def true_rows(self):
+        return self.rows(self.vehicles.states)
 
     def headings(self):
         headings = self.flier.headings(self.vehicles.measured)
@@ -93,9 +97,8 @@ class Rows:
             self.generators = [np.random.default_rng(each) for each in seeds]
         chosen = np.ones(self.count, bool)
         self.place(chosen, states)
-        rows = self.rows()
-        self.ask("begun", rows, chosen)
-        return self.observe(rows), {}
+        self.ask("begun", self.true_rows(), chosen)
+        return self.observe(self.rows()), {}
 
     def place(self, chosen, states=None):
         """Starts the chosen rows anew: where `states` says, or as the task does."""
@@ -126,14 +129,15 @@ class Rows:
             raise ValueError(f"actions: must have shape ({self.count}, 4), found {columns.shape}")
         measured = self.vehicles.measured
         columns = self.kind.unscaled(columns) if self.scaled else columns
-        wrenches = np.asarray(self.flier.step(measured, self.kind.demand(columns, self.flier.headings(measured))))
+        demands = self.kind.demand(columns, self.flier.headings(measured))
+        wrenches = np.asarray(self.flier.step(self.vehicles, demands))
         by_policy, reasons = self.flier.by_policy, self.flier.reasons
         self.keep(wrenches, by_policy)
         clipped, not_finite = self.vehicles.step(wrenches)
         self.flier.end(clipped)
         if begun.any():
             self.place(begun)
-        rows = self.rows()
+        rows = self.true_rows()
         self.ask("moved", rows, np.asarray(actions))
         if begun.any():
             self.ask("begun", rows, begun)
@@ -145,7 +149,7 @@ class Rows:
         info = {"clipped": clipped & ~begun}
         if by_policy is not None:
             info |= {"by_policy": by_policy, "reasons": np.array(reasons, object)}
-        return self.observe(rows), rewards, terminated, truncated, info
+        return self.observe(self.rows()), rewards, terminated, truncated, info
 
     def keep(self, wrenches, by_policy):
         if self.kept is None:

@@ -4,15 +4,18 @@
     saturated_hybrid/Gate-v0     fly through an opening of 1 m by 1 m in a wall, and on to a point behind it
 
 `gymnasium.make(id, …)` is one vehicle, `gymnasium.make_vec(id, num_envs, …)` rows. Both take a `scenario`, whose
-reference is replaced (left out: the built-in Hummingbird), and what `Environment` takes but `start`. Actions are
-accelerations forwards, to the left and up, and a yaw rate, in [-1, 1], unless an argument says otherwise.
+reference is replaced (left out: the built-in Hummingbird), and what `Environment` takes but `start`. `estimated=True`
+flies on the boards' estimator, with an IMU and late poses, in place of the scenario's own `[sensors]`; a dictionary of
+keys of `[estimator]` chooses them. An episode is judged by the true states. Actions are accelerations forwards, to the
+left and up, and a yaw rate, in [-1, 1], unless an argument says otherwise.
 
     observation (22,)   target - position, m | velocity, m/s | rotation, row by row | body rates, rad/s | the last action
                         the first three from the heading: forwards, to the left, up; what `saturated_hybrid.Network`
                         sees
     terminated          on the ground or beyond it, out of the box, or at the wall
 
-The target is the point; of the gate its middle, until the vehicle is through.
+The target is the point; of the gate its middle, until the vehicle is through. `shield=HoverRows.box` or `GateRows.box`
+keeps vehicles in what their task leaves them: of the gate a box on either side of the wall, and one through the opening.
 """
 
 import numpy as np
@@ -35,11 +38,36 @@ GATE, HALF = np.array([0.0, 0.0, 1.5]), 0.5
 BEHIND = np.array([2.0, 0.0, 1.5])
 BEFORE = np.array([-2.5, 0.0, 1.5])
 
+# How far a shield's boxes end before the room's walls, before the wall and the opening's rim, and how far the box through
+# the opening reaches on either side, m.
+INSIDE, CLEAR, REACH = np.array([0.2, 0.2, 0.2]), 0.1, 2.0
+# The floor is the ground.
+FLOOR = 0.3
 
-def scenario_of(scenario, point):
-    """The scenario with rest at `point` as its reference, for one episode."""
+
+def boxes(*corners):
+    """What `shield` takes, for boxes from corner to corner."""
+    low, high = (np.array(each, float).tolist() for each in zip(*corners))
+    return {"low": low, "high": high}
+
+
+def _box_and_wall():
+    low, high = np.append((LOW + INSIDE)[:2], FLOOR), HIGH - INSIDE
+    before, behind = high.copy(), low.copy()
+    before[0], behind[0] = GATE[0] - CLEAR, GATE[0] + CLEAR
+    through = np.array([REACH, HALF - CLEAR, HALF - CLEAR])
+    return boxes((low, high)), boxes((low, before), (GATE - through, GATE + through), (behind, high))
+
+
+ROOM, ROOMS = _box_and_wall()
+
+
+def scenario_of(scenario, point, estimated=False):
+    """The scenario with rest at `point` as its reference, for one episode; on the estimator, if so."""
     scenario = _core.Scenario.built_in("hummingbird") if scenario is None else scenario
     changes = {"reference": {"kind": "hover", "position": list(point)}, "duration": DURATION}
+    if estimated:
+        changes |= {"sensors": None, "estimator": {} if estimated is True else dict(estimated)}
     return scenario.edited(changes | {"initial": {"position": list(point)}})
 
 
@@ -57,11 +85,11 @@ def seen(rows, headings, target, last):
 class _Hover:
     """Stay at a point."""
 
-    point, middle = POINT, POINT
+    point, middle, box = POINT, POINT, ROOM
 
-    def __init__(self, scenario=None, *rows, action="forward", scaled=True, **options):
+    def __init__(self, scenario=None, *rows, action="forward", scaled=True, estimated=False, **options):
         self._last = np.zeros(4)
-        super().__init__(scenario_of(scenario, self.point), *rows, action=action, scaled=scaled, **options)
+        super().__init__(scenario_of(scenario, self.point, estimated), *rows, action=action, scaled=scaled, **options)
 
     def target(self, rows):
         """Where to fly to, m."""
@@ -103,7 +131,7 @@ class _Hover:
 class _Gate(_Hover):
     """Through a gate to a point behind it."""
 
-    point, middle = BEHIND, BEFORE
+    point, middle, box = BEHIND, BEFORE, ROOMS
 
     def begun(self, rows, chosen):
         """None is through who has just begun."""
