@@ -206,7 +206,7 @@ impl Shield {
         state: &State,
         offers: Option<&Demand>,
     ) -> Result<ShieldStep, InputError> {
-        let prospect = law.stopping_forecast(state, &self.limits);
+        let prospect = law.stopping_forecast(state, &self.limits, self.settings.late);
         let inside = self.settings.room_of(&prospect.places, self.room.as_ref());
         self.room = inside.or(self.room).or_else(|| self.settings.nearest_room(&prospect.z_1));
         let against = self.judge(state, &prospect, inside.is_some(), offers);
