@@ -242,7 +242,7 @@ impl Shield {
             }
             _ => FlownBy::Law,
         };
-        let prospect = law.stopping_forecast(state, &self.limits, by);
+        let prospect = law.stopping_forecast(state, &self.limits, by, self.settings.late);
         let inside = self.settings.room_of(&prospect.places, self.room.as_ref());
         self.room = inside.or(self.room).or_else(|| self.settings.nearest_room(&prospect.z_1));
         let against = self.judge(state, &prospect, inside.is_some(), usable);

@@ -63,6 +63,7 @@ pub use health::{COASTING_AFTER_US, Faults, Health};
 pub use history::{Clipped, EXTRAPOLATION_MAX_US, Increment};
 pub use measurement::PoseMeasurement;
 pub use nominal::Nominal;
+pub use present::VELOCITY_LATE_S;
 pub use settings::{EstimatorParameters, Settings};
 pub use verdict::{Accepted, Fault, Rejected};
 

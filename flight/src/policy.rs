@@ -13,6 +13,7 @@ use controller_core::reference::Reference;
 use controller_core::shield::{Policy, Reason, Settings, Shield};
 use controller_core::state::State;
 use core::fmt;
+use estimation::estimator::VELOCITY_LATE_S;
 use nalgebra::Vector3;
 
 /// How far inside the fence the box is, and how high its floor is above the place of arming.
@@ -119,7 +120,8 @@ impl<P: Policy> Aboard for Guarded<P> {
 
     fn begin(&mut self, [low, high]: [Vector3<f32>; 2], goal: &Vector3<f32>, heading: &Heading) -> Result<(), Refusal> {
         let shield = self.shield.as_mut().ok_or(Refusal::NoPolicyUnderLaw)?;
-        shield.set_settings(&Settings::new(low, high)).map_err(|_| Refusal::OutsideFence)?;
+        let settings = Settings { late: VELOCITY_LATE_S, ..Settings::new(low, high) };
+        shield.set_settings(&settings).map_err(|_| Refusal::OutsideFence)?;
         shield.reset(heading);
         self.policy.begin();
         (self.goal, self.last) = (*goal, None);

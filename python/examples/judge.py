@@ -179,12 +179,14 @@ HEAD = (
 )
 
 
-def judge(task, policies, episodes, report=print, **options):
+def judge(task, policies, episodes, report=print, shielded=False, **options):
     """Flies episodes of every policy with and without the shield; of the gate also with a shield that knows only the
-    room. Rows of the table that it reports: names, and numbers."""
+    room. Only with the shield of the task, if `shielded`. Rows of the table that it reports: names, and numbers."""
     shields = {"no": None, "box": ROOM}
     if TASKS[task].box is not ROOM:
         shields["boxes"] = TASKS[task].box
+    if shielded:
+        shields = dict(list(shields.items())[-1:])
     table = []
     report("| " + " | ".join(HEAD) + " |")
     report("|" + "---|" * len(HEAD))
@@ -237,6 +239,7 @@ def main(given=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("learnt", type=pathlib.Path, help="a directory that learn.py has written for both tasks")
     parser.add_argument("--task", choices=list(TASKS), action="append", help="left out: both")
+    parser.add_argument("--shielded", action="store_true", help="only with the shield of the task")
     parser.add_argument("--estimated", action="store_true", help="on the boards' estimator: poses 20 ms late")
     parser.add_argument("--late", action="store_true", help="poses 100 ms late and noisy, a tenth of them lost")
     parser.add_argument("--scenario", help="a vehicle's file; left out: the Hummingbird")
@@ -246,15 +249,18 @@ def main(given=None):
     arguments = parser.parse_args(given)
     scenario = scenario_of(arguments.scenario, arguments.wind)
     estimated = LATE if arguments.late else arguments.estimated
-    tables, start = {}, Network.untrained(arguments.seed)
-    for task in TASKS:
-        learnt = Network.read(arguments.learnt / f"{task}.toml")
-        without = Network.read(arguments.learnt / f"{task}-without.toml")
-        if task in (arguments.task or TASKS):
-            print(f"\n**{task}**\n")
-            compared = policies(start, learnt, without, arguments.seed)
-            tables[task] = judge(task, compared, arguments.episodes, scenario=scenario, estimated=estimated)
-        start = learnt
+    options = {"shielded": arguments.shielded, "scenario": scenario, "estimated": estimated}
+    # The gate was learnt from weights that hover.
+    starts = {"hover": lambda: Network.untrained(arguments.seed), "gate": lambda: read("hover")}
+    tables = {}
+
+    def read(name):
+        return Network.read(arguments.learnt / f"{name}.toml")
+
+    for task in arguments.task or TASKS:
+        print(f"\n**{task}**\n")
+        compared = policies(starts[task](), read(task), read(f"{task}-without"), arguments.seed)
+        tables[task] = judge(task, compared, arguments.episodes, **options)
     return tables
 
 

@@ -62,7 +62,7 @@ def run(name, seed, generations, episodes, out):
 def main(given=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=pathlib.Path, help="directory for the weights; left out: they are not kept")
-    parser.add_argument("--generations", type=int, default=50)
+    parser.add_argument("--generations", type=int, default=20)
     parser.add_argument("--episodes", type=int, default=100, help="of what was learnt, on truth and on estimates each")
     parser.add_argument("--vehicle", choices=list(VEHICLES), action="append", help="left out: all three")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])

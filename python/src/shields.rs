@@ -19,6 +19,7 @@ use controller_core::shield::settings::ROOMS_MAX;
 use controller_core::shield::{self, Demand, Reason, Room, Settings};
 use controller_core::state::State;
 use host_sim::flight;
+use host_sim::flight::estimation::velocity_late;
 use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -105,13 +106,13 @@ fn both() -> PyErr {
 struct ShieldArguments {
     /// The corners of its rooms, lower and upper.
     rooms: Vec<[[f64; 3]; 2]>,
-    /// Margin, speed, silence, patience and its greatest.
-    numbers: [f64; 5],
+    /// Margin, how late velocities are, speed, silence, patience and its greatest.
+    numbers: [f64; 6],
     hand_overs: u32,
 }
 
 impl ShieldArguments {
-    fn new(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>, numbers: [f64; 5], hand_overs: Whole) -> PyResult<Self> {
+    fn new(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>, numbers: [f64; 6], hand_overs: Whole) -> PyResult<Self> {
         let hand_overs = hand_overs.within("hand_overs", 1..=u64::from(u32::MAX))? as u32;
         let (low, high) = (one_or_more::<3>(low, "low")?, one_or_more::<3>(high, "high")?);
         if !(1..=ROOMS_MAX).contains(&low.len()) {
@@ -125,11 +126,11 @@ impl ShieldArguments {
 
     fn settings(&self) -> Settings {
         let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
-        let [margin, speed, silence, patience, patience_greatest] = self.numbers.map(|value| value as f32);
+        let [margin, late, speed, silence, patience, patience_greatest] = self.numbers.map(|value| value as f32);
         let room = |[low, high]: &[[f64; 3]; 2]| Room::new(corner(*low), corner(*high));
         let rooms = std::array::from_fn(|number| self.rooms.get(number).map(room));
         let hand_overs = self.hand_overs;
-        Settings { rooms, margin, speed, silence, patience, patience_greatest, hand_overs }
+        Settings { rooms, margin, late, speed, silence, patience, patience_greatest, hand_overs }
     }
 
     /// As Python names it.
@@ -138,7 +139,7 @@ impl ShieldArguments {
         let corners = |which: usize| self.rooms.iter().map(|room| room[which]).collect::<Vec<_>>();
         named.set_item("low", corners(0))?;
         named.set_item("high", corners(1))?;
-        let names = ["margin", "speed", "silence", "patience", "patience_greatest"];
+        let names = ["margin", "late", "speed", "silence", "patience", "patience_greatest"];
         for (name, number) in names.into_iter().zip(self.numbers) {
             named.set_item(name, number)?;
         }
@@ -156,6 +157,8 @@ impl ShieldArguments {
 ///     low, high: corners (3,) of the box to stay in, m, world; or (n, 3) of up to four boxes: it stays in one or
 ///         another of them, and goes over where they overlap.
 ///     margin: how far inside its boxes it is kept, m: as far as an estimated place may be from the true one.
+///     late: how late the velocity of states is where the acceleration has just changed, s; left out: 0.012 of a scenario
+///         with `[estimator]`, zero of any other.
 ///     speed: the greatest speed of the policy, m/s.
 ///     silence: for how long the last demand is flown if none comes, s.
 ///     patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
@@ -173,9 +176,9 @@ pub struct Shield {
 #[pymethods]
 impl Shield {
     #[new]
-    #[pyo3(signature = (scenario, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0,
+    #[pyo3(signature = (scenario, *, low, high, margin=0.0, late=None, speed=10.0, silence=0.1, patience=1.0,
         patience_greatest=16.0, hand_overs=Whole::new(10)),
-        text_signature = "(scenario, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0, \
+        text_signature = "(scenario, *, low, high, margin=0.0, late=None, speed=10.0, silence=0.1, patience=1.0, \
 patience_greatest=16.0, hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
     fn new(
@@ -183,13 +186,15 @@ patience_greatest=16.0, hand_overs=10)")]
         low: &Bound<'_, PyAny>,
         high: &Bound<'_, PyAny>,
         margin: f64,
+        late: Option<f64>,
         speed: f64,
         silence: f64,
         patience: f64,
         patience_greatest: f64,
         hand_overs: Whole,
     ) -> PyResult<Self> {
-        let numbers = [margin, speed, silence, patience, patience_greatest];
+        let late = late.unwrap_or_else(|| velocity_late(&scenario.get().read).into());
+        let numbers = [margin, late, speed, silence, patience, patience_greatest];
         let arguments = ShieldArguments::new(low, high, numbers, hand_overs)?;
         let start = ShieldRow::new(scenario.get(), &arguments.settings())?;
         Ok(Self { scenario: scenario.clone().unbind(), arguments, one: start.clone(), start, diagnostics: None })
@@ -334,9 +339,9 @@ pub struct ShieldRows {
 #[pymethods]
 impl ShieldRows {
     #[new]
-    #[pyo3(signature = (scenario, rows, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0,
+    #[pyo3(signature = (scenario, rows, *, low, high, margin=0.0, late=None, speed=10.0, silence=0.1, patience=1.0,
         patience_greatest=16.0, hand_overs=Whole::new(10)),
-        text_signature = "(scenario, rows, *, low, high, margin=0.0, speed=10.0, silence=0.1, patience=1.0, \
+        text_signature = "(scenario, rows, *, low, high, margin=0.0, late=None, speed=10.0, silence=0.1, patience=1.0, \
 patience_greatest=16.0, hand_overs=10)")]
     #[allow(clippy::too_many_arguments)] // its user names them
     fn new(
@@ -345,6 +350,7 @@ patience_greatest=16.0, hand_overs=10)")]
         low: &Bound<'_, PyAny>,
         high: &Bound<'_, PyAny>,
         margin: f64,
+        late: Option<f64>,
         speed: f64,
         silence: f64,
         patience: f64,
@@ -353,7 +359,7 @@ patience_greatest=16.0, hand_overs=10)")]
     ) -> PyResult<Self> {
         let rows = rows.within("rows", 0..=ROWS_MAX)? as usize;
         let Shield { scenario, arguments, start, .. } =
-            Shield::new(scenario, low, high, margin, speed, silence, patience, patience_greatest, hand_overs)?;
+            Shield::new(scenario, low, high, margin, late, speed, silence, patience, patience_greatest, hand_overs)?;
         Ok(Self { scenario, arguments, ones: vec![start.clone(); rows], start })
     }
 

@@ -11,6 +11,9 @@ pub const ROOMS_MAX: usize = 4;
 /// The greatest margin along walls, m.
 const MARGIN_MAX_M: f32 = 100.0;
 
+/// The latest velocity, s.
+const LATE_MAX_S: f32 = 0.1;
+
 /// The settings. World frame, SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -18,6 +21,8 @@ pub struct Settings {
     pub rooms: [Option<Room>; ROOMS_MAX],
     /// How far inside its rooms a vehicle is kept, m: as far as its estimated place may be from the true one.
     pub margin: f32,
+    /// How late the velocity of its states is where the acceleration has just changed, s: an estimator's, that averages.
+    pub late: f32,
     /// The greatest speed of a policy, m/s.
     pub speed: f32,
     /// For how long the last demand is flown if none comes, s.
@@ -37,6 +42,7 @@ impl Settings {
         Self {
             rooms: [Some(Room::new(low, high)), None, None, None],
             margin: 0.0,
+            late: 0.0,
             speed: 10.0,
             silence: 0.1,
             patience: 1.0,
@@ -50,9 +56,13 @@ impl Settings {
     /// # Errors
     /// Names the first setting that makes no sense.
     pub fn check(&self) -> Result<(), ParameterError> {
-        require_finite(self.margin, "shield.margin")?;
-        require(self.margin >= 0.0, "shield.margin", Reason::Below(0.0))?;
-        require(self.margin <= MARGIN_MAX_M, "shield.margin", Reason::Above(MARGIN_MAX_M))?;
+        for (value, most, field) in
+            [(self.margin, MARGIN_MAX_M, "shield.margin"), (self.late, LATE_MAX_S, "shield.late")]
+        {
+            require_finite(value, field)?;
+            require(value >= 0.0, field, Reason::Below(0.0))?;
+            require(value <= most, field, Reason::Above(most))?;
+        }
         require(self.rooms.iter().any(Option::is_some), "shield.rooms", Reason::TooFew(1))?;
         self.rooms.iter().flatten().try_for_each(|room| room.check(self.margin))?;
         for (value, field) in [

@@ -256,6 +256,25 @@ fn a_margin_makes_every_room_smaller() {
     }
 }
 
+/// A vehicle that has just begun to climb with all that it has: the sooner the law takes over, the later its velocity is.
+#[test]
+fn a_velocity_that_is_late_stops_the_vehicle_earlier() {
+    let taken = |late| {
+        let (mut law, mut shield) = shielded(&Settings { late, ..settings() });
+        let climb = Demand::Acceleration { acceleration: Vector3::new(0.0, 0.0, 8.0), yaw_rate: 0.0 };
+        let state = |tick: u32| {
+            let time = tick as f32 * PERIOD;
+            State {
+                velocity: Vector3::new(0.0, 0.0, 8.0 * time),
+                ..resting(MIDDLE + Vector3::z() * (4.0 * time * time))
+            }
+        };
+        let mut flies = |tick| shield.step(&mut law, &state(tick), Some(&climb)).unwrap().reason.is_none();
+        (0..100).position(|tick| !flies(tick)).unwrap()
+    };
+    assert!(taken(0.03) < taken(0.0), "{} {}", taken(0.03), taken(0.0));
+}
+
 #[test]
 fn settings_that_make_no_sense_are_refused_by_name() {
     let good = settings();
@@ -269,6 +288,8 @@ fn settings_that_make_no_sense_are_refused_by_name() {
         (roomed(low, low + Vector3::new(5.0, 0.59, 5.0)), "shield.high - shield.low"),
         (Settings { margin: 2.5, ..good }, "shield.high - shield.low"),
         (Settings { margin: -0.1, ..good }, "shield.margin"),
+        (Settings { late: -0.01, ..good }, "shield.late"),
+        (Settings { late: 0.2, ..good }, "shield.late"),
         (Settings { margin: f32::NAN, ..good }, "shield.margin"),
         (Settings { rooms: [None; ROOMS_MAX], ..good }, "shield.rooms"),
         (Settings { speed: 0.0, ..good }, "shield.speed"),

@@ -26,6 +26,9 @@
 use super::history::Increment;
 use nalgebra::Vector3;
 
+/// How late the velocity of a state is at most, along a thrust that has just changed, s.
+pub const VELOCITY_LATE_S: f32 = 0.012;
+
 /// Of the last two increments, in the body frame at their end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PresentMotion {

@@ -13,7 +13,7 @@ use crate::vehicle::instruments::{Instruments, SAMPLE_PERIOD_US};
 use crate::vehicle::sensed::Sensed;
 use controller_core::error::ParameterError;
 use controller_core::state::State;
-use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings};
+use estimation::estimator::{Estimator, Fault, PoseMeasurement, Settings, VELOCITY_LATE_S};
 use estimation::imu::{Calibration, Conditioner, INCREMENT_US, ImuParameters};
 use flight::Stamped;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
@@ -37,6 +37,11 @@ impl fmt::Display for NoEstimate {
             None => f.write_str("no state to fly on"),
         }
     }
+}
+
+/// How late the velocity of a law's states is at most, where the thrust has just changed, s: zero without an estimator.
+pub fn velocity_late(scenario: &Scenario) -> f32 {
+    if scenario.reality.estimator.is_some() { VELOCITY_LATE_S } else { 0.0 }
 }
 
 /// Sensors and estimator in use.

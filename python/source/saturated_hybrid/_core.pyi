@@ -324,6 +324,8 @@ class Shield:
         low, high: corners (3,) of the box to stay in, m, world; or (n, 3) of up to four boxes: it stays in one or another of
             them, and goes over where they overlap.
         margin: how far inside its boxes it is kept, m: as far as an estimated place may be from the true one.
+        late: how late the velocity of states is where the acceleration has just changed, s; left out: 0.012 of a scenario with
+            `[estimator]`, zero of any other.
         speed: the greatest speed of the policy, m/s.
         silence: for how long the last demand is flown if none comes, s.
         patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
@@ -338,6 +340,7 @@ class Shield:
         low: ArrayLike,
         high: ArrayLike,
         margin: float = 0.0,
+        late: float | None = None,
         speed: float = 10.0,
         silence: float = 0.1,
         patience: float = 1.0,
@@ -417,6 +420,7 @@ class ShieldRows:
         low: ArrayLike,
         high: ArrayLike,
         margin: float = 0.0,
+        late: float | None = None,
         speed: float = 10.0,
         silence: float = 0.1,
         patience: float = 1.0,

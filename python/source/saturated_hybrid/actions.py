@@ -93,8 +93,12 @@ def kinds(scenario):
 
 def turned(vectors, headings, sign=1.0):
     """Vectors (..., 3) from the frames of headings (..., 2), unit vectors, to the world; with -1 the other way."""
-    (x, y, z), (cos, sin) = np.moveaxis(vectors, -1, 0), np.moveaxis(headings, -1, 0)
-    return np.stack([cos * x - sign * sin * y, sign * sin * x + cos * y, z], axis=-1)
+    vectors, headings = np.asarray(vectors, float), np.asarray(headings, float)
+    x, y, cos, sin = vectors[..., 0], vectors[..., 1], headings[..., 0], sign * headings[..., 1]
+    along = np.asarray(cos * x - sin * y)
+    turned = np.empty((*along.shape, 3))
+    turned[..., 0], turned[..., 1], turned[..., 2] = along, sin * x + cos * y, vectors[..., 2]
+    return turned
 
 
 def facing(states):
@@ -145,7 +149,8 @@ class Shielded(Direct):
         self.fresh = np.ones(rows, bool)
 
     def headings(self, states):
-        return np.where(self.fresh[:, None], facing(states), self.shield.references[:, 15:17])
+        headings = self.shield.references[:, 15:17].astype(float)
+        return np.where(self.fresh[:, None], facing(states), headings) if self.fresh.any() else headings
 
     def step(self, vehicles, demands):
         self.fresh[:] = False

@@ -74,12 +74,14 @@ def scenario_of(scenario, point, estimated=False):
 def seen(rows, headings, target, last):
     """The 22 numbers of an observation, for rows (..., 32), headings (..., 2), a target (..., 3) and the last action
     (..., 4)."""
-    rows = np.asarray(rows, float)
-    columns = np.moveaxis(rotations(rows[..., 6:10]), -1, 0)
-    rotation = np.moveaxis([turned(column, headings, -1.0) for column in columns], 0, -1)
-    towards, velocity = turned(target - rows[..., :3], headings, -1.0), turned(rows[..., 3:6], headings, -1.0)
-    flat = rotation.reshape(*rotation.shape[:-2], 9)
-    return np.concatenate([towards, velocity, flat, rows[..., 10:13], last], axis=-1)
+    rows, headings = np.asarray(rows, float), np.asarray(headings, float)
+    # Five vectors in the last axis but one: the first is towards the target, then the velocity, and the axes of the body.
+    vectors = np.empty((*rows.shape[:-1], 5, 3))
+    vectors[..., 0, :], vectors[..., 1, :] = target - rows[..., :3], rows[..., 3:6]
+    vectors[..., 2:, :] = np.swapaxes(rotations(rows[..., 6:10]), -1, -2)
+    here = turned(vectors, headings[..., None, :], -1.0)
+    rotation = np.swapaxes(here[..., 2:, :], -1, -2).reshape(*rows.shape[:-1], 9)
+    return np.concatenate([here[..., 0, :], here[..., 1, :], rotation, rows[..., 10:13], last], axis=-1)
 
 
 class _Hover:

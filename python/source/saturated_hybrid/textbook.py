@@ -67,13 +67,18 @@ class Textbook:
 def rotations(quaternions):
     """Rotation matrices (..., 3, 3), body to world, of quaternions (..., 4), scalar first, of any length but zero."""
     quaternions = np.asarray(quaternions, float)
-    w, x, y, z = np.moveaxis(quaternions / np.linalg.norm(quaternions, axis=-1, keepdims=True), -1, 0)
+    unit = quaternions / np.sqrt(np.square(quaternions).sum(axis=-1, keepdims=True))
+    w, x, y, z = (unit[..., place] for place in range(4))
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
     ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    matrices = np.empty((*unit.shape[:-1], 3, 3))
+    for number, row in enumerate(rows):
+        for place, value in enumerate(row):
+            matrices[..., number, place] = value
+    return matrices
 
 
 def attitudes(forces, yaw):

@@ -48,8 +48,9 @@ pub struct StoppingForecast {
 }
 
 impl Controller {
-    /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`.
-    pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits, by: FlownBy) -> StoppingForecast {
+    /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`. `late`, s, is for how long
+    /// the velocity may already have gone on with the acceleration of now.
+    pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits, by: FlownBy, late: f32) -> StoppingForecast {
         let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;
         let max = self.ceiling.at(scale, &torque);
@@ -57,6 +58,8 @@ impl Controller {
         let errors = self.position.errors(state, &origin, filters, &force);
         let (z_1, z_2) = (errors.z_1, errors.z_2);
         let acceleration = filters.intermediate + force;
+        let present = State { velocity: state.velocity + acceleration * late, ..*state };
+        let present = self.position.errors(&present, &origin, filters, &force);
         let mut command = filters.command;
         command.z += self.vehicle.gravity;
         let magnitude = math::sqrt(command.norm_squared());
@@ -97,7 +100,10 @@ impl Controller {
                 first,
                 second,
                 stop(went_on, z_2),
-                stop(went_on + sped_up * (0.5 * reaction), z_2 + sped_up + push_velocity),
+                stop(
+                    present.z_1 + present.z_2 * reaction + sped_up * (0.5 * reaction),
+                    present.z_2 + sped_up + push_velocity,
+                ),
             ],
             alignment: axis.dot(&command) / magnitude,
             doubtful: self.memory.held > 0
