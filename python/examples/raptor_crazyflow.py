@@ -1,7 +1,7 @@
 """RAPTOR on crazyflow's Crazyflie: bare, behind the shield, and beside the law alone, in a simulator of other people.
 
     pip install crazyflow
-    python python/examples/raptor_crazyflow.py --episodes 200
+    python python/examples/raptor_crazyflow.py 
 
 The flights are those of raptor.py, their starts as well. The vehicle and its rotors are crazyflow's, from first
 principles, at 500 Hz: thrusts with a linear term, rotors that rise and fall at different rates, drag, gyroscopic
@@ -112,22 +112,24 @@ lag = {float(lag)}
 
 def main(given=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--episodes", type=int, default=200)
+    parser.add_argument("--episodes", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args(given)
     vehicles = Crazyflies(arguments.episodes)
     scenario = vehicles.scenario()
     print(sh.certify(scenario).report.splitlines()[-1])
     vehicles.mixer = sh.Allocation(scenario)
-    raptor.row("vehicle", "flight", "pilot", *raptor.HEAD)
-    raptor.row(*["---"] * (3 + len(raptor.HEAD)))
+    raptor.row("vehicle", "flight", *raptor.HEAD)
+    raptor.row(*["---"] * (2 + len(raptor.HEAD)))
     for condition in raptor.CONDITIONS:
         if condition[0] not in CONDITIONS:
             continue
         states, goals = raptor.drawn(condition, arguments.episodes, arguments.seed)
-        for name, pilot in raptor.PILOTS.items():
-            seen = raptor.fly(scenario, pilot, states, goals, arguments.seed, vehicles=vehicles)
-            raptor.row(f"crazyflow {DRONE}", condition[0], name, *raptor.cells(seen))
+        options = {"vehicles": vehicles}
+        seen = [
+            raptor.fly(scenario, pilot, states, goals, arguments.seed, **options) for pilot in raptor.PILOTS.values()
+        ]
+        raptor.row(DRONE, condition[0], *raptor.cells(*seen))
 
 
 if __name__ == "__main__":
