@@ -179,6 +179,10 @@ fn shielded(counter: &Counter, certified: &Certified, from: &State, turns_rotors
     let step: Shielded = black_box(Shield::step);
     let outputs: Outputs = black_box(Network::outputs);
     let (mut cost, mut thinking, mut state) = (Cost::default(), Cost::default(), *from);
+    if turns_rotors {
+        // The speeds that hover stay the same all the way: from rest they leave the vehicle where it is.
+        state = State { velocity: zero, attitude: Quaternion::identity(), angular_velocity: zero, ..*from };
+    }
     let observation = shield.observation(law, &state, &zero);
     let inputs = network.interface().inputs(&observation, &[0.0; OUTPUT_COUNT]);
     let (mut memory, hover) = (network.fresh(), observation.rotors);
