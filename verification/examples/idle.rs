@@ -9,11 +9,11 @@
 use controller_core::certificate::certified::{Certified, Refused};
 use host_sim::flight::Flight;
 use host_sim::flight::course::Course;
+use host_sim::flight::tasks::recovery;
 use host_sim::studies::campaign::draw::circumstances;
 use host_sim::studies::campaign::outcome::Outcome;
 use host_sim::studies::campaign::quantile;
 use host_sim::studies::campaign::step::with_longest_step;
-use host_sim::flight::tasks::recovery;
 use scenario::Scenario;
 use std::error::Error;
 use std::fs;

@@ -1,6 +1,6 @@
 //! The verdict on a vehicle's file, in rows and sentences.
 
-use crate::VehicleFile;
+use crate::vehicle_file::VehicleFile;
 use controller_core::allocation::Spin;
 use controller_core::certificate::Certificate;
 use controller_core::certificate::inequality::Inequality;

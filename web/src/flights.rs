@@ -1,8 +1,8 @@
 //! Flights of the page, tick by tick.
 
-use crate::VehicleFile;
 use crate::indi;
 use crate::tasks::{self, FlightRequest, LawName};
+use crate::vehicle_file::VehicleFile;
 use controller_core::certificate::Certificate;
 use host_sim::flight::tasks::WIND_START_S;
 use host_sim::flight::{Flight, Tick};

@@ -1,6 +1,6 @@
 //! Another program's file as a vehicle file of ours.
 
-use crate::VehicleFile;
+use crate::vehicle_file::VehicleFile;
 use host_sim::identification::import::written::{Wishes, written};
 use host_sim::identification::import::{self, Format};
 use serde::Serialize;

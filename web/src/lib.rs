@@ -21,17 +21,10 @@ pub mod indi;
 pub mod paper;
 pub mod presets;
 pub mod tasks;
+pub mod vehicle_file;
 
 use serde::{Deserialize, Serialize};
-
-/// A vehicle's file.
-#[derive(Debug, Clone, Deserialize)]
-pub struct VehicleFile {
-    /// Its name, for messages.
-    pub file: String,
-    /// Its text.
-    pub text: String,
-}
+use vehicle_file::VehicleFile;
 
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]

@@ -10,7 +10,7 @@
 //!
 //! The wind sets in after a second. The file's own wind, disturbances, failures and noise are left out.
 
-use crate::VehicleFile;
+use crate::vehicle_file::VehicleFile;
 use controller_core::reference::harmonic::{Harmonic, HarmonicParameters, HeadingParameters};
 use host_sim::commands::certify::may_fly::{CIRCLE_RADIUS_M, circle};
 use host_sim::flight::tasks::{hover, in_still_air, in_wind, of_mass_and_thrust, recovery};

@@ -12,31 +12,15 @@
 
 pub mod interface;
 pub mod layer;
+mod sizes;
 
 pub use interface::Interface;
 pub use layer::{Activation, Affine, Layer};
+pub use sizes::{INPUT_COUNT, LAYERS_MAX, MEMORY_MAX, OUTPUT_COUNT, WEIGHT_MAX, WIDTH_MAX};
 
 use super::{Demand, Observation, Policy};
-use crate::error::{ParameterError, Reason, require, require_finite};
+use crate::error::{ParameterError, Reason, require};
 use crate::heading::Heading;
-
-/// The number of inputs.
-pub const INPUT_COUNT: usize = 22;
-
-/// The number of outputs.
-pub const OUTPUT_COUNT: usize = 4;
-
-/// The greatest number of outputs of a layer.
-pub const WIDTH_MAX: usize = 64;
-
-/// The greatest number of layers.
-pub const LAYERS_MAX: usize = 4;
-
-/// The greatest number of values that recurrent layers remember together.
-pub const MEMORY_MAX: usize = 64;
-
-/// The greatest magnitude of a weight, a bias, a scale, or a value that is remembered at first.
-pub const WEIGHT_MAX: f32 = 1e4;
 
 /// A network.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,12 +97,6 @@ impl<'a> Network<'a> {
     pub fn demand(&self, outputs: &[f32; OUTPUT_COUNT], heading: &Heading) -> Demand {
         self.interface.demand(outputs, heading)
     }
-}
-
-/// A number that a network may have.
-fn checked(value: f32, field: &'static str) -> Result<(), ParameterError> {
-    require_finite(value, field)?;
-    require(value.abs() <= WEIGHT_MAX, field, Reason::Above(WEIGHT_MAX))
 }
 
 /// A network that flies, with its last outputs and what it remembers.

@@ -17,7 +17,7 @@
 //! The heading frame is the world's turned about z to where the shield's heading points. The layout of rotors is that of
 //! the policy RAPTOR (Eschmann et al., A foundation policy for quadrotor control, 2025, arXiv 2509.11481).
 
-use super::{INPUT_COUNT, OUTPUT_COUNT, checked};
+use super::sizes::{INPUT_COUNT, OUTPUT_COUNT, checked};
 use crate::error::{ParameterError, require_positive};
 use crate::heading::Heading;
 use crate::math;

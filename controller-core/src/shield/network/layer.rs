@@ -16,7 +16,7 @@
 //!
 //! element by element where two vectors are multiplied. The rows of r come first, then those of z and n.
 
-use super::{WIDTH_MAX, checked};
+use super::sizes::{WIDTH_MAX, checked};
 use crate::error::{ParameterError, Reason, require};
 use crate::math;
 
