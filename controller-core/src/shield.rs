@@ -22,8 +22,9 @@
 //!
 //! A policy flies while some room holds the whole prospect: the way to a stop is then inside that room. Where two rooms
 //! overlap, a vehicle goes from one to the other. The refuge is a place near z_1 at the hand-over, at rest, in the room
-//! that held the prospect last: the law brakes there with all that the envelope has. The policy gets the vehicle back once it has been near the refuge for a while, and again after longer
-//! each time, up to a number of hand-overs. `docs/shield.md` says what is proven of it.
+//! that held the prospect last: the law brakes there with all that the envelope has. The policy gets the vehicle back
+//! once it has been near the refuge for a while, and again after longer each time, up to a number of hand-overs.
+//! `docs/shield.md` says what is proven of it.
 
 mod heading;
 pub mod monitor;

@@ -139,7 +139,7 @@ class Flights:
         observations, _ = environment.reset(seed=seeds)
         rows = environment.num_envs
         alive, earned = np.ones(rows, bool), np.zeros(rows)
-        flown, clipped, by_policy, crashed = (np.zeros(rows) for _ in range(4))
+        flown, clipped, by_policy, crashed, wall = (np.zeros(rows) for _ in range(5))
         out = np.full(rows, -np.inf)
         for _ in range(self.ticks):
             observations, rewards, terminated, truncated, info = environment.step(act(observations))
@@ -150,6 +150,7 @@ class Flights:
             clipped += alive & info["clipped"]
             by_policy += alive & policy
             crashed += alive & (positions[:, 2] <= 0.0)
+            wall += alive & getattr(environment, "hit", False)
             out = np.where(alive, np.maximum(out, outside(positions, self.box)), out)
             alive = alive & ~terminated
             if not alive.any():
@@ -162,6 +163,7 @@ class Flights:
             "by_policy": by_policy,
             "crashed": crashed > 0,
             "lost": lost,
+            "wall": wall > 0,
             "out": out,
         }
 
@@ -172,6 +174,7 @@ HEAD = (
     "earned",
     "crashed",
     "lost",
+    "at the wall",
     "left the box",
     "to its walls, m",
     "beyond the rotors",
@@ -203,14 +206,15 @@ def judge(task, policies, episodes, report=print, shielded=False, **options):
                 "earned": seen["earned"].mean(),
                 "crashed": int(seen["crashed"].sum()),
                 "lost": int(seen["lost"].sum()),
+                "wall": int(seen["wall"].sum()),
                 "out": int((seen["out"] > 0.0).sum()),
                 "nearest": -seen["out"].max(),
                 "clipped": seen["clipped"].sum() / flown,
                 "by_policy": seen["by_policy"].sum() / flown,
             }
             table.append((name, shield, row))
-            cells = (name, shield, f"{row['earned']:.0f}", row["crashed"], row["lost"], row["out"])
-            cells += (f"{row['nearest']:.2f}", f"{row['clipped']:.1%}", f"{row['by_policy']:.1%}")
+            cells = (name, shield, f"{row['earned']:.0f}", row["crashed"], row["lost"], row["wall"])
+            cells += (row["out"], f"{row['nearest']:.2f}", f"{row['clipped']:.1%}", f"{row['by_policy']:.1%}")
             report("| " + " | ".join(map(str, cells)) + " |")
     return table
 

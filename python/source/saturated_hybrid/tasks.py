@@ -12,7 +12,7 @@ left and up, and a yaw rate, in [-1, 1], unless an argument says otherwise.
     observation (22,)   target - position, m | velocity, m/s | rotation, row by row | body rates, rad/s | the last action
                         the first three from the heading: forwards, to the left, up; what `saturated_hybrid.Network`
                         sees
-    terminated          on the ground or beyond it, out of the box, or at the wall
+    terminated          on the ground or beyond it, out of the room, at the wall, or back through the opening
 
 The target is the point; of the gate its middle, until the vehicle is through. `shield=HoverRows.box` or `GateRows.box`
 keeps vehicles in what their task leaves them: of the gate a box on either side of the wall, and one through the opening.
@@ -139,17 +139,17 @@ class _Gate(_Hover):
         """None is through who has just begun."""
         super().begun(rows, chosen)
         if not hasattr(self, "through"):
-            self.through, self.hit, self._before = False, False, 0.0
-        self.through, self.hit = self.through & ~chosen, self.hit & ~chosen
+            self.through, self.hit, self.back, self._before = False, False, False, 0.0
+        self.through, self.hit, self.back = self.through & ~chosen, self.hit & ~chosen, self.back & ~chosen
         self._before = np.where(chosen, rows[..., 0], self._before)
 
     def moved(self, rows, actions):
-        """Who crosses the wall is through or has hit it."""
+        """Who crosses the wall is through or has hit it; who was through may not come back."""
         super().moved(rows, actions)
         crossed = (self._before < GATE[0]) & (rows[..., 0] >= GATE[0])
         inside = np.all(np.abs(rows[..., 1:3] - GATE[1:]) < HALF, axis=-1)
-        back = self.through & (rows[..., 0] < GATE[0])
-        self.hit = self.hit | (crossed & ~inside) | back
+        self.back = self.back | (self.through & (rows[..., 0] < GATE[0]))
+        self.hit = self.hit | (crossed & ~inside)
         self.through = self.through | (crossed & inside)
         self._before = np.array(rows[..., 0])
 
@@ -158,8 +158,8 @@ class _Gate(_Hover):
         return np.where(np.asarray(self.through)[..., None], BEHIND, GATE + [0.3, 0.0, 0.0])
 
     def terminated(self, rows):
-        """A crash, or at the wall beside the opening."""
-        return super().terminated(rows) | self.hit
+        """A crash, at the wall beside the opening, or back before it."""
+        return super().terminated(rows) | self.hit | self.back
 
     def reward(self, rows, actions):
         """As for staying at a point, and one more for every step behind the gate."""
