@@ -18,7 +18,7 @@ from saturated_hybrid.actions import kinds
 VEHICLES = {
     "Hummingbird": "vehicles/hummingbird.toml",
     "x500": "vehicles/published/x500.toml",
-    "Crazyflie": "vehicles/published/cf2x-pybullet.toml",
+    "Crazyflie": "vehicles/published/cf-rotorpy.toml",
 }
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 WIND = 2.0  # m/s
