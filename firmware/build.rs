@@ -10,6 +10,8 @@ mod embed;
 #[path = "build/policy.rs"]
 mod policy;
 
+use scenario::Scenario;
+use scenario::policy::PolicyFile;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -85,7 +87,7 @@ fn scenario(target: &Path) -> Result<(), String> {
     let source = format!(
         "{}\n/// Whether the build was told which vehicle it is for.\npub const IS_NAMED: bool = {is_named};\n{}",
         embedded.source,
-        carried(&top)?
+        carried(&top, &text, &name)?
     );
     fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))?;
     replayed(&top, &target.with_file_name("raptor.rs"))
@@ -96,19 +98,20 @@ fn replayed(top: &Path, target: &Path) -> Result<(), String> {
     let file = top.join(RECURRENT_POLICY);
     println!("cargo::rerun-if-changed={}", file.display());
     let text = scenario::text::read(&file).map_err(|error| format!("{RECURRENT_POLICY}: {error}"))?;
-    let source = policy::network(&text, RECURRENT_POLICY)?;
-    fs::write(target, source).map_err(|error| format!("{}: {error}", target.display()))
+    let policy = PolicyFile::parse(&text, RECURRENT_POLICY)?;
+    fs::write(target, policy::network(&policy)).map_err(|error| format!("{}: {error}", target.display()))
 }
 
-/// The source of the policy that POLICY names, or of none.
-fn carried(top: &Path) -> Result<String, String> {
+/// The source of the policy that POLICY names, for the scenario `flown` of the file `vehicle`; or of none.
+fn carried(top: &Path, flown: &str, vehicle: &str) -> Result<String, String> {
     println!("cargo::rerun-if-env-changed=POLICY");
     let Ok(name) = env::var("POLICY") else { return Ok(policy::NONE.to_owned()) };
     let file = top.join(&name);
     println!("cargo::rerun-if-changed={}", file.display());
     let text = scenario::text::read(&file)
         .map_err(|error| format!("POLICY {name}: cannot be read from the top of the repository: {error}"))?;
-    policy::source(&text, &name)
+    let scenario = Scenario::parse(flown, vehicle).map_err(|error| error.to_string())?;
+    policy::source(&text, &name, &scenario)
 }
 
 /// Puts the board's memory map where ../memory.x finds it, and links the scripts of the runtime and of defmt.

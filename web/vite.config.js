@@ -1,4 +1,4 @@
-// How the page is built: static files with relative addresses, and the licences of what is shipped with it.
+// How the page is built: static files with relative addresses, and the licences of the packages in it.
 
 import { readFileSync } from "node:fs";
 import { defineConfig } from "vite";

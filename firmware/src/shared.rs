@@ -20,10 +20,10 @@
 //! A board keeps one [`Shared`] in a `StaticCell` and hands out views; its mutex is one that also holds against the
 //! control task's interrupt. No queue makes a sender wait: what does not fit is refused or counted.
 
-mod access;
+pub(crate) mod access;
 mod card;
 mod count;
-mod event;
+pub(crate) mod event;
 mod flag;
 mod latest;
 mod library;
@@ -32,7 +32,7 @@ mod protocol;
 mod queue;
 mod recent_texts;
 mod reply;
-mod report;
+pub(crate) mod report;
 mod requests;
 mod setpoint_owner;
 mod table;

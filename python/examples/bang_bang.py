@@ -4,9 +4,9 @@
     python python/examples/bang_bang.py --estimated [--late 0]              on the boards' estimator
     python python/examples/bang_bang.py --scenario FILE --rough --margin 0.2
 
-Each demands 100 m/s^2 along a direction of its own, changes sides up to eight times a second, and begins at rest a metre
-or more inside a box. It prints how many left the box, how near or how far outside they came, and how long the policy
-flew. docs/shield.md has the figures.
+Each demands 100 m/s^2 along a direction of its own, changes sides up to eight times a second, and begins at rest a
+metre or more inside a box. It prints how many left the box, how near or how far outside they came, and how long the
+policy flew. docs/shield.md has the figures.
 """
 
 import argparse

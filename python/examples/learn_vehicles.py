@@ -3,8 +3,8 @@
     python python/examples/learn_vehicles.py --out learnt
 
 Nine runs, each a short form of python/examples/learn.py's, on a Hummingbird, an x500 and a Crazyflie, in 2 m/s of wind
-with turbulence. It prints a row of a table for each: episodes lost while it learnt, and what a hundred episodes of what was
-learnt then show, on the true states and on those of the boards' estimator. docs/learning.md has the table.
+with turbulence. It prints a row of a table for each: episodes lost while it learnt, and a hundred episodes of the
+learnt policy on the true states and on those of the boards' estimator. docs/learning.md has the table.
 """
 
 import argparse
@@ -63,7 +63,8 @@ def main(given=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=pathlib.Path, help="directory for the weights; left out: they are not kept")
     parser.add_argument("--generations", type=int, default=20)
-    parser.add_argument("--episodes", type=int, default=100, help="of what was learnt, on truth and on estimates each")
+    both = "of the learnt policy, on true states and on estimates each"
+    parser.add_argument("--episodes", type=int, default=100, help=both)
     parser.add_argument("--vehicle", choices=list(VEHICLES), action="append", help="left out: all three")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
     arguments = parser.parse_args(given)

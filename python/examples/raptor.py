@@ -4,14 +4,15 @@
     python python/examples/raptor.py fly
     python python/examples/raptor.py ways
 
-`convert` makes a policy file of the checkpoint in the package foundation-policy. `fly` flies that file: the numbers come
-from the wheel's network, to the bits that boards fly. `ways` compares what a demand may be made of. The wheel and numpy
+`convert` makes a policy file of the checkpoint in the package foundation-policy. `fly` flies that file: the numbers
+come from the wheel's network, to the bits that boards fly. `ways` compares ways to make a demand. The wheel and numpy
 are enough for these two. docs/foundation-policy.md has the tables.
 """
 
 import argparse
 import pathlib
 import sys
+import textwrap
 
 import numpy as np
 import saturated_hybrid as sh
@@ -28,6 +29,8 @@ VEHICLES = {
     "iris": "vehicles/published/iris.toml",
 }
 
+# Columns of a policy file.
+WIDTH = 100
 # What it sees at most along each axis, m and m/s: as in its training.
 FARTHEST, FASTEST = 1.0, 2.0
 # The room, m: a vehicle that leaves it is lost. The shield's box is inside.
@@ -43,6 +46,7 @@ HEADER = """\
 demands = "rotors"
 farthest = {farthest}                       # m
 fastest = {fastest}                        # m/s
+period = 0.01                        # s
 """
 
 
@@ -71,7 +75,7 @@ def text_of(checkpoint, version):
         for ours, theirs in names.items():
             values = np.asarray(layer[theirs]["parameters"], np.float32)
             if ours.endswith("weights"):
-                rows = ",\n".join("    " + numbers(row) for row in values)
+                rows = ",\n".join(textwrap.indent(numbers(row), "    ") for row in values)
                 lines.append(f"{ours} = [\n{rows},\n]")
             else:
                 lines.append(f"{ours} = {numbers(values.ravel())}")
@@ -81,7 +85,8 @@ def text_of(checkpoint, version):
 
 def numbers(values):
     """Single-precision numbers with the digits that reading back bit for bit takes."""
-    return "[" + ", ".join(str(value) for value in values) + "]"
+    text = "[" + ", ".join(str(value) for value in values) + "]"
+    return textwrap.fill(text, WIDTH, subsequent_indent="     ")
 
 
 def converted():
@@ -359,7 +364,7 @@ def out(seen):
 
 
 def cells(bare, shielded, law):
-    """Of a row of the table, of what flights showed."""
+    """The cells of a row, of the three pilots' flights."""
     lost = ", ".join(str(seen["lost"]) for seen in (bare, shielded, law))
     beyond = f"{bare['beyond']:.1%}, {shielded['beyond']:.1%}".replace("%", " %")
     return lost, out(shielded), beyond, f"{shielded['by_policy']:.0%}".replace("%", " %"), error(bare), error(shielded)

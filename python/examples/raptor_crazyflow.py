@@ -1,7 +1,7 @@
 """RAPTOR on crazyflow's Crazyflie: bare, behind the shield, and beside the law alone, in a simulator of other people.
 
     pip install crazyflow
-    python python/examples/raptor_crazyflow.py 
+    python python/examples/raptor_crazyflow.py
 
 The flights are those of raptor.py, their starts as well. The vehicle and its rotors are crazyflow's, from first
 principles, at 500 Hz: thrusts with a linear term, rotors that rise and fall at different rates, drag, gyroscopic
@@ -36,7 +36,7 @@ class Crazyflies:
         self.mixer = None
 
     def scenario(self):
-        """The scenario of this vehicle, of what the law is to know."""
+        """The scenario, with what the law knows of this vehicle."""
         given, arm = self.given, float(self.given["L"])
         hover = 9.81 * float(given["mass"]) / 4.0
         speed = self.rpm(hover)

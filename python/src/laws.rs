@@ -86,7 +86,7 @@ impl Law {
     ///     state: (13,).
     ///     reference: (19,).
     ///     acceleration: (3,), since the last tick, by an accelerometer, m/s^2, world: the law's estimates then rest on
-    ///         it. NaN, or left out: there is none.
+    ///         it. NaN, or left out: no accelerometer.
     ///
     /// Returns:
     ///     The wrench (4,), N and N m, not clipped to any limit. `for_rotors` says what to ask the rotors for.

@@ -35,6 +35,8 @@ mod replays;
 mod rotor_vehicles;
 mod rows;
 mod scenarios;
+mod shield_arguments;
+mod shield_row;
 mod shields;
 mod threads;
 mod tuning;

@@ -40,7 +40,7 @@ impl Network {
         PolicyFile::parse(text, file).map(Self).map_err(refused)
     }
 
-    /// (4,): what the outputs are multiplied by, m/s^2 three times and rad/s; None where they are speeds of rotors.
+    /// (4,): what multiplies the outputs, m/s^2 three times and rad/s; None where they are speeds of rotors.
     #[getter]
     fn scale<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f32>>> {
         match &self.0.interface {
@@ -56,6 +56,12 @@ impl Network {
             Interface::Acceleration { .. } => "acceleration",
             Interface::Rotors { .. } => "rotors",
         }
+    }
+
+    /// The time between two of its steps, s; None if any will do.
+    #[getter]
+    fn period(&self) -> Option<f32> {
+        self.0.period
     }
 
     /// (rows, m) float32: what a network of recurrent layers remembers at first; m is zero for the others.
@@ -123,8 +129,8 @@ impl Network {
         array(py, self.advanced(&observations, &[], 0)?.0)
     }
 
-    /// The demands (n, 4), float32, for outputs (n, 4) and headings (n, 2): accelerations in the world and yaw rates; or
-    /// speeds, for `ShieldRows.step(…, rotors=…)`.
+    /// The demands (n, 4), float32, for outputs (n, 4) and headings (n, 2): accelerations in the world and yaw rates;
+    /// or speeds, for `ShieldRows.step(…, rotors=…)`.
     fn demands<'py>(
         &self,
         py: Python<'py>,

@@ -3,150 +3,21 @@
 //! A step that is refused changes nothing, of rows none of them. No demand is refused that has the right shape: one
 //! that cannot be used hands over to the law.
 
-use crate::errors::{in_flight, refused, refused_field};
+use crate::errors::{in_flight, refused};
 use crate::laws::{ROWS_MAX, for_rotors, named, numbers, step_rows};
 use crate::rows::{
-    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, demand_row, demand_rows, felt, measured, of_reference,
-    of_rotors, of_wrench, one_or_more, row, rows, wrench, wrench_rows,
+    REFERENCE_COLUMNS, STATE_COLUMNS, WRENCH_COLUMNS, array, demand_row, demand_rows, measured, of_reference,
+    of_rotors, of_wrench, row, rows, wrench, wrench_rows,
 };
 use crate::scenarios::Scenario;
+use crate::shield_arguments::ShieldArguments;
+use crate::shield_row::{ShieldRow, both};
 use crate::whole_number::Whole;
 use controller_core::controller::Diagnostics;
-use controller_core::heading::Heading;
-use controller_core::law::Law;
-use controller_core::reference::Reference;
-use controller_core::shield::settings::ROOMS_MAX;
-use controller_core::shield::{self, Demand, Reason, Room, Settings};
-use controller_core::state::State;
-use host_sim::flight;
 use host_sim::flight::estimation::velocity_late;
-use nalgebra::Vector3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-
-/// A law, its shield, and what became of the last step.
-#[derive(Clone)]
-struct ShieldRow {
-    law: Law,
-    shield: shield::Shield,
-    /// Before the first step.
-    fresh: bool,
-    reason: Option<Reason>,
-    reference: Reference,
-}
-
-impl ShieldRow {
-    fn new(scenario: &Scenario, settings: &Settings) -> PyResult<Self> {
-        let (configuration, period) = (&scenario.read.configuration, scenario.read.timing.period() as f32);
-        let shield = shield::Shield::new(configuration, settings, period).map_err(refused)?;
-        let law = flight::law(&scenario.read).map_err(refused)?;
-        let origin = Vector3::zeros();
-        let refuge = settings.nearest_room(&origin).map_or(origin, |room| room.refuge(&origin));
-        let reference = Reference::resting(refuge, Heading::FORWARD);
-        Ok(Self { law, shield, fresh: true, reason: None, reference })
-    }
-
-    /// Whether it is as before a flight, as `start` is.
-    fn is_as(&self, start: &Self) -> bool {
-        self.fresh && self.law == start.law
-    }
-
-    fn by_policy(&self) -> bool {
-        !self.fresh && self.reason.is_none()
-    }
-
-    fn reason(&self) -> &'static str {
-        self.reason.map_or("", Reason::word)
-    }
-
-    /// The speeds that the rotors were told last.
-    fn rotors(&mut self) -> [f32; 4] {
-        self.law.extended().map_or([0.0; 4], |law| self.shield.rotors(law))
-    }
-
-    fn step(
-        &mut self,
-        state: &State,
-        demand: Option<&Demand>,
-        acceleration: Option<&[f64; 3]>,
-    ) -> Result<([f32; WRENCH_COLUMNS], Diagnostics), String> {
-        if let Some(acceleration) = acceleration {
-            self.law.measured(&felt(acceleration));
-        }
-        if self.fresh {
-            self.shield.reset(&Heading::from_attitude(&state.attitude));
-        }
-        // There is no shield of another law.
-        let law = self.law.extended().ok_or("control.law: must be \"extended\"")?;
-        let flown = self.shield.step(law, state, demand).map_err(|error| error.to_string())?;
-        (self.fresh, self.reason, self.reference) = (false, flown.reason, flown.reference);
-        Ok((of_wrench(&flown.wrench), flown.diagnostics))
-    }
-}
-
-impl ShieldRow {
-    /// What was given, if the vehicle's rotors are an X.
-    fn of_an_x<T>(&self, given: T) -> PyResult<T> {
-        if self.shield.flies_rotors() {
-            return Ok(given);
-        }
-        let problem = "this vehicle flies none: it takes an X of four like rotors, front right counter-clockwise";
-        Err(refused_field("rotors", problem))
-    }
-}
-
-/// The refusal of two demands at once.
-fn both() -> PyErr {
-    refused_field("rotors", "a demand is given already; leave one of them out")
-}
-
-/// What a shield was made of.
-#[derive(Clone)]
-struct ShieldArguments {
-    /// The corners of its rooms, lower and upper.
-    rooms: Vec<[[f64; 3]; 2]>,
-    /// Margin, how late velocities are, speed, silence, patience and its greatest.
-    numbers: [f64; 6],
-    hand_overs: u32,
-}
-
-impl ShieldArguments {
-    fn new(low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>, numbers: [f64; 6], hand_overs: Whole) -> PyResult<Self> {
-        let hand_overs = hand_overs.within("hand_overs", 1..=u64::from(u32::MAX))? as u32;
-        let (low, high) = (one_or_more::<3>(low, "low")?, one_or_more::<3>(high, "high")?);
-        if !(1..=ROOMS_MAX).contains(&low.len()) {
-            return Err(refused_field("low", format!("must be of 1 to {ROOMS_MAX} boxes, found {}", low.len())));
-        }
-        if low.len() != high.len() {
-            return Err(refused_field("high", format!("must be of {} boxes as low, found {}", low.len(), high.len())));
-        }
-        Ok(Self { rooms: low.into_iter().zip(high).map(<[_; 2]>::from).collect(), numbers, hand_overs })
-    }
-
-    fn settings(&self) -> Settings {
-        let corner = |corner: [f64; 3]| Vector3::from(corner).map(|place| place as f32);
-        let [margin, late, speed, silence, patience, patience_greatest] = self.numbers.map(|value| value as f32);
-        let room = |[low, high]: &[[f64; 3]; 2]| Room::new(corner(*low), corner(*high));
-        let rooms = std::array::from_fn(|number| self.rooms.get(number).map(room));
-        let hand_overs = self.hand_overs;
-        Settings { rooms, margin, late, speed, silence, patience, patience_greatest, hand_overs }
-    }
-
-    /// As Python names it.
-    fn named<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let named = PyDict::new(py);
-        let corners = |which: usize| self.rooms.iter().map(|room| room[which]).collect::<Vec<_>>();
-        named.set_item("low", corners(0))?;
-        named.set_item("high", corners(1))?;
-        let names = ["margin", "late", "speed", "silence", "patience", "patience_greatest"];
-        for (name, number) in names.into_iter().zip(self.numbers) {
-            named.set_item(name, number)?;
-        }
-        named.set_item("hand_overs", self.hand_overs)?;
-        Ok(named)
-    }
-}
 
 /// The extended law flying what a policy demands, within its limits, and taking over while it must.
 ///
@@ -157,8 +28,8 @@ impl ShieldArguments {
 ///     low, high: corners (3,) of the box to stay in, m, world; or (n, 3) of up to four boxes: it stays in one or
 ///         another of them, and goes over where they overlap.
 ///     margin: how far inside its boxes it is kept, m: as far as an estimated place may be from the true one.
-///     late: how late the velocity of states is where the acceleration has just changed, s; left out: 0.012 of a scenario
-///         with `[estimator]`, zero of any other.
+///     late: how late the velocity of states is where the acceleration has just changed, s; left out: 0.012 of a
+///         scenario with `[estimator]`, zero of any other.
 ///     speed: the greatest speed of the policy, m/s.
 ///     silence: for how long the last demand is flown if none comes, s.
 ///     patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
@@ -288,7 +159,7 @@ patience_greatest=16.0, hand_overs=10)")]
         self.one.shield.hand_overs()
     }
 
-    /// (4,): the speeds that the rotors were told last, whoever flew, as `step` takes them; zeros for a vehicle that is
+    /// (4,): the speeds last commanded of the rotors, whoever flew, as `step` takes them; zeros for a vehicle that is
     /// no X.
     #[getter]
     fn rotors<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {

@@ -1,4 +1,4 @@
-"""The examples that learn and judge: a short form learns measurably, and the shield keeps what it promises meanwhile."""
+"""The examples that learn and judge: a short form learns measurably, and the shield keeps its promises meanwhile."""
 
 import sys
 

@@ -174,8 +174,14 @@ def test_a_state_that_cannot_be_used_changes_nothing():
             lambda: sh.Shield(sh.Scenario.built_in("paper"), **BOX),
             'control.law: must be "extended": the paper\'s law carries no policy',
         ),
-        (lambda: sh.Shield(SCENARIO, low=[0, 0, 0], high=[1, 1, 0.5]), "shield.high - shield.low: must be at least 0.6"),
-        (lambda: sh.Shield(SCENARIO, low=[[0, 0, 0]] * 5, high=[[1, 1, 1]] * 5), "low: must be of 1 to 4 boxes, found 5"),
+        (
+            lambda: sh.Shield(SCENARIO, low=[0, 0, 0], high=[1, 1, 0.5]),
+            "shield.high - shield.low: must be at least 0.6",
+        ),
+        (
+            lambda: sh.Shield(SCENARIO, low=[[0, 0, 0]] * 5, high=[[1, 1, 1]] * 5),
+            "low: must be of 1 to 4 boxes, found 5",
+        ),
         (lambda: sh.Shield(SCENARIO, low=[[0, 0, 0]] * 2, high=[1, 1, 1]), "high: must be of 2 boxes as low, found 1"),
         (lambda: sh.Shield(SCENARIO, low=[[0, 0]], high=[1, 1, 1]), r"low: must have shape \(3,\) or \(n, 3\)"),
         (lambda: sh.Shield(SCENARIO, **BOX, margin=-0.1), "shield.margin: must be at least 0"),

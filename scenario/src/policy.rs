@@ -25,6 +25,8 @@
 //! fastest = 2.0                           # m/s: how fast it sees itself at most
 //! ```
 //!
+//! Either may say how often it acts, `period = 0.01`, in s; left out: at any rate.
+//!
 //! [`controller_core::shield::network`] says what inputs and outputs are, and what a layer computes.
 
 use controller_core::error::ParameterError;
@@ -38,6 +40,8 @@ pub struct PolicyFile {
     pub layers: Vec<LayerNumbers>,
     /// What inputs and outputs mean.
     pub interface: Interface,
+    /// The time between two of its steps, s; none if any will do.
+    pub period: Option<f32>,
 }
 
 /// Weights, row by row, and biases.
@@ -162,7 +166,8 @@ impl PolicyFile {
             LayerNumbers::read(layer, &path)
         };
         let layers = layers.iter().enumerate().map(layer).collect::<Result<_, String>>()?;
-        Ok(Self { layers, interface })
+        let period = table.contains_key("period").then(|| positive(table, "period")).transpose()?;
+        Ok(Self { layers, interface, period })
     }
 
     /// Does something with the network of these numbers.
@@ -175,21 +180,23 @@ impl PolicyFile {
 /// What inputs and outputs mean.
 fn interface(table: &Table) -> Result<Interface, String> {
     if word(table, "demands", "", &["acceleration", "rotors"])? == "rotors" {
-        only(table, &["demands", "farthest", "fastest", "layers"], "")?;
-        let positive = |key: &str| {
-            let number = table.get(key).and_then(single).filter(|number| *number > 0.0);
-            number.ok_or_else(|| format!("{key}: must be a number above zero"))
-        };
-        return Ok(Interface::Rotors { farthest: positive("farthest")?, fastest: positive("fastest")? });
+        only(table, &["demands", "farthest", "fastest", "period", "layers"], "")?;
+        return Ok(Interface::Rotors { farthest: positive(table, "farthest")?, fastest: positive(table, "fastest")? });
     }
-    only(table, &["demands", "scale", "layers"], "")?;
+    only(table, &["demands", "scale", "period", "layers"], "")?;
     let scale = numbers(table.get("scale"), "scale")?;
     let count = scale.len();
     let scale = scale.try_into().map_err(|_| format!("scale: must have {OUTPUT_COUNT} numbers, found {count}"))?;
     Ok(Interface::Acceleration { scale })
 }
 
-/// A word of those that are known; the first where there is none.
+/// A number above zero.
+fn positive(table: &Table, key: &str) -> Result<f32, String> {
+    let number = table.get(key).and_then(single).filter(|number| *number > 0.0);
+    number.ok_or_else(|| format!("{key}: must be a number above zero"))
+}
+
+/// One of the known words; the first where the key is missing.
 fn word<'w>(table: &Table, key: &str, path: &str, known: &[&'w str]) -> Result<&'w str, String> {
     let Some(given) = table.get(key) else { return Ok(known.first().copied().unwrap_or_default()) };
     let found = given.as_str().and_then(|given| known.iter().find(|known| **known == given));

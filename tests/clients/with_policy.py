@@ -1,5 +1,6 @@
-"""A policy that is built into the firmware, let fly by a ground station: pymavlink requests PX4's mode AUTO, EXTERNAL1, sees it
-fly and the law take over at the box's ceiling, and ends it by the mode for holding; MAVSDK ends it by a place to go to.
+"""A policy that is built into the firmware, let fly by a ground station: pymavlink requests PX4's mode AUTO, EXTERNAL1,
+sees it fly and the law take over at the box's ceiling, and ends it by the mode for holding; MAVSDK ends it by a place
+to go to.
 
 Built without a policy, the firmware refuses the mode, and this test fails: .ci/clients builds it with one.
 """

@@ -159,7 +159,8 @@ def verdict_and_number(visitor):
     visitor.expect(rows >= 8, f"the certificate has {rows} rows")
     visitor.until(lambda: len(visitor.text("paper-hash")) == 64, "the paper's flight has no number")
     visitor.expect(visitor.text("paper-hash") == PUBLISHED_HASH, f"the paper's flight is {visitor.text('paper-hash')}")
-    visitor.expect(visitor.text("paper-same").startswith("The same"), f"beside it stands {visitor.text('paper-same')!r}")
+    said = visitor.text("paper-same")
+    visitor.expect(said.startswith("The same"), f"beside it stands {said!r}")
 
 
 def presets_and_bad_files(visitor, folder):
@@ -169,7 +170,7 @@ def presets_and_bad_files(visitor, folder):
     visitor.write(good.replace("mass = 2.064", "mass = -2.064"))
     error = visitor.chrome.find_element(By.ID, "error")
     visitor.until(error.is_displayed, "a bad file is not refused")
-    visitor.expect("x500.toml: vehicle.mass: must be" in error.text, f"a bad file is told {error.text!r}")
+    visitor.expect("x500.toml: vehicle.mass: must be" in error.text, f"a bad file's message is {error.text!r}")
     visitor.expect(error.get_attribute("role") == "alert", "a screen reader is not told of the error")
     visitor.expect(not visitor.text("verdict").startswith("CERTIFIED"), "a bad file is CERTIFIED")
     visitor.shoot(folder, "bad-file")
@@ -216,7 +217,7 @@ def links(visitor):
     visitor.open(address[:-9])
     error = visitor.chrome.find_element(By.ID, "error")
     visitor.until(error.is_displayed, "a damaged link is taken")
-    visitor.expect("link" in error.text, f"a damaged link is told {error.text!r}")
+    visitor.expect("link" in error.text, f"a damaged link's message is {error.text!r}")
     return len(address)
 
 

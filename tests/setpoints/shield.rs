@@ -1,6 +1,7 @@
 //! Policies that mean harm, behind the shield: a thousand short flights of a Hummingbird and of two published vehicles,
 //! the Hummingbird and one more in wind, and a thousand on the boards' estimator with poses that come late. No command
-//! is beyond a rotor or a limit, and no vehicle leaves its box by more than [`OUTSIDE_MAX_M`]. The same policies on the law alone, within the same limits, crash.
+//! is beyond a rotor or a limit, and no vehicle leaves its box by more than [`OUTSIDE_MAX_M`]. The same policies on the
+//! law alone, within the same limits, crash.
 //! `cargo test -p host-sim shield -- --nocapture` prints the table that stands in `docs/shield.md`.
 
 use crate::support::random::{self, ChaCha8Rng};

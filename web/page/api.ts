@@ -84,7 +84,7 @@ export interface FlightRequest {
   mass: number;
   /** Which rotor is weak, 1 to n; 0: none. */
   weak_rotor: number;
-  /** What it delivers of what is commanded, 0.3 to 1. */
+  /** The share of its command that it delivers, 0.3 to 1. */
   weak_share: number;
   /** With the task own: a trajectory file's text and name. */
   trajectory?: string;

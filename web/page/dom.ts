@@ -19,13 +19,13 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** Makes `list` show one item for each text, and hides `part` if there is none. */
+/** Makes `list` show one item for each text, and hides `part` if there are no texts. */
 export function fill(list: Element, texts: readonly string[], part: HTMLElement | null = null): void {
   list.replaceChildren(...texts.map((text) => make("li", {}, text)));
   if (part) part.hidden = texts.length === 0;
 }
 
-/** Shows a text in `place`, or hides the place if there is none. */
+/** Shows a text in `place`, or hides the place without one. */
 export function say(place: HTMLElement, text: string | null): void {
   place.hidden = text === null;
   if (place.textContent !== (text ?? "")) place.textContent = text ?? "";

@@ -31,7 +31,7 @@ const OWN_MAX_S: f64 = 120.0;
 /// Where the step begins.
 const STEP_START_M: Vector3<f64> = Vector3::new(-1.0, 0.0, 0.0);
 /// Laps of the circle, the share of the certified speed, and the greatest speed: faster is hard to watch.
-const LAPS: f64 = 2.0;
+const CIRCLE_LAPS: f64 = 2.0;
 const SPEED_SHARE: f64 = 0.6;
 const SPEED_MAX_M_PER_S: f64 = 5.0;
 /// The slowest circle that is flown.
@@ -157,7 +157,7 @@ fn round(vehicle: &Scenario) -> Result<Scenario, String> {
     let turning = speed / CIRCLE_RADIUS_M;
     let start = Vector3::new(CIRCLE_RADIUS_M, 0.0, 0.0);
     let mut flight =
-        hover(vehicle, start, (LAPS * TAU / turning).min(CIRCLE_MAX_S)).map_err(|error| error.to_string())?;
+        hover(vehicle, start, (CIRCLE_LAPS * TAU / turning).min(CIRCLE_MAX_S)).map_err(|error| error.to_string())?;
     let reference = HarmonicParameters {
         center: [0.0; 3],
         amplitude: [CIRCLE_RADIUS_M as f32, CIRCLE_RADIUS_M as f32, 0.0].map(Into::into),

@@ -79,7 +79,8 @@ fn files_of_other_programs_become_vehicle_files_and_say_what_they_lack() {
     let import = |file: &str, text: &str| ask(&json!({"do": "import", "file": file, "text": text}));
     let urdf = r#"<robot name="cf"><properties arm="0.0397" kf="3.16e-10" km="7.94e-12" thrust2weight="2.25"
         max_speed_kmh="30" gnd_eff_coeff="11.36859" prop_radius="2.31348e-2" drag_coeff_xy="9.1785e-7"
-        drag_coeff_z="10.311e-7" dw_coeff_1="2267.18" dw_coeff_2=".16" dw_coeff_3="-.11"/><link name="base_link"><inertial><origin rpy="0 0 0"
+        drag_coeff_z="10.311e-7" dw_coeff_1="2267.18" dw_coeff_2=".16" dw_coeff_3="-.11"/>
+        <link name="base_link"><inertial><origin rpy="0 0 0"
         xyz="0 0 0"/><mass value="0.027"/><inertia ixx="1.4e-5" ixy="0" ixz="0" iyy="1.4e-5" iyz="0" izz="2.17e-5"/>
         </inertial></link></robot>"#;
     let found = import("cf2x.urdf", urdf).unwrap();

@@ -263,8 +263,8 @@ impl PositionLaw {
         Vector3::new(wanted.x * share, wanted.y * share, vertical)
     }
 
-    /// The filters' states where the law has commanded `wanted`, m/s^2, for long, changing it by `rate`, m/s^3: each cut
-    /// to the envelope.
+    /// The filters' states where the law has long commanded `wanted`, m/s^2, changing it by `rate`, m/s^3: each cut to
+    /// the envelope.
     pub fn filters_at(&self, wanted: &Vector3<f32>, rate: &Vector3<f32>, max: f32) -> Filters {
         let [of_command, of_intermediate, _] = self.lags;
         let ahead = |time: f32| self.within(&(wanted + rate * time), max);

@@ -6,11 +6,11 @@
 //! sqrt(f) = sqrt(f_min) + (1 + a) / 2 (sqrt(f_max) - sqrt(f_min)),    w = s B f,    s the thrust scale
 //! ```
 //!
-//! and the rotors, which are told w / s, turn as they are told. Two cuts keep w within the limits:
+//! and the rotors, commanded w / s, turn at just these speeds. Two cuts keep w within the limits:
 //!
 //! 1. all thrusts go towards f_min by one share, as far as T_max wants it;
-//! 2. all torques are multiplied by one share, as far as a limit of theirs wants it. With rotors that need equal thrusts
-//!    for thrust alone, that moves every rotor towards the mean.
+//! 2. all torques are multiplied by one share, as far as a limit of theirs wants it. With rotors that need equal
+//!    thrusts for thrust alone, that moves every rotor towards the mean.
 //!
 //! Both stay in the box [f_min, f_max]^4, which is convex. A share of [`RANGE_UNUSED`] at its ends is left for the
 //! rounding on the way through w, so that no rotor's command is ever clipped.
@@ -94,7 +94,7 @@ impl RotorSpeeds {
         })
     }
 
-    /// The wrench of rotors at these speeds, N and N m, for a thrust scale; numbers that are no number count as -1.
+    /// The wrench of rotors at these speeds, N and N m, for a thrust scale; a NaN counts as -1.
     pub fn wrench(&self, speeds: &[f32; 4], scale: f32) -> Wrench {
         let mut sum = Vector4::zeros();
         for (column, speed) in self.columns.iter().zip(speeds) {
@@ -117,7 +117,7 @@ impl RotorSpeeds {
         Wrench { thrust: wrench.x, torque: torque * share }
     }
 
-    /// The speeds of rotors that are told `commanded`, (T, tau) in N and N m, divided by the thrust scale.
+    /// The speeds of rotors whose command is `commanded`, (T, tau) in N and N m, divided by the thrust scale.
     pub fn speeds(&self, commanded: &Vector4<f32>) -> [f32; 4] {
         self.rows.map(|row| {
             let thrust = math::max(row.dot(commanded), 0.0);

@@ -7,7 +7,7 @@
 //! | [`Reason::Tilt`] | the thrust axis is farther from the wanted one than [`TILT_MAX_RAD`] | 60 degrees | thrust along u is then half; beyond a right angle none is left |
 //! | [`Reason::Rate`] | the body turns about the tilt's axes faster than 1.15 Omega + sqrt(2 TILT_MAX_RAD M_theta / J), or about z faster than [`YAW_RATE_SHARE_MAX`] W_max | | M_theta stops such a turn within [`TILT_MAX_RAD`]; 1.15 Omega is the frame's own |
 //! | [`Reason::Speed`] | faster than `speed` | 10 m/s | chosen; a shield's settings change it |
-//! | [`Reason::Stop`] | no room holds all places of the [`StoppingForecast`] | | the law would not stop inside any more |
+//! | [`Reason::Stop`] | no room holds all places of the [`StoppingForecast`] | | the law would not stop inside |
 //! | [`Reason::Estimate`] | force or thrust scale at a level, held, or the force more than thrust holds, for longer than [`DOUBT_MAX_S`] | 1 s | the levels for stopping count on them |
 
 use super::Settings;

@@ -21,7 +21,7 @@ pub struct Settings {
     pub rooms: [Option<Room>; ROOMS_MAX],
     /// How far inside its rooms a vehicle is kept, m: as far as its estimated place may be from the true one.
     pub margin: f32,
-    /// How late the velocity of its states is where the acceleration has just changed, s: an estimator's, that averages.
+    /// How late the velocity of its states is where the acceleration has just changed, s: estimators average.
     pub late: f32,
     /// The greatest speed of a policy, m/s.
     pub speed: f32,

@@ -256,7 +256,7 @@ fn a_margin_makes_every_room_smaller() {
     }
 }
 
-/// A vehicle that has just begun to climb with all that it has: the sooner the law takes over, the later its velocity is.
+/// A vehicle that has just begun to climb with all its thrust: the later its velocity, the sooner the law takes over.
 #[test]
 fn a_velocity_that_is_late_stops_the_vehicle_earlier() {
     let taken = |late| {

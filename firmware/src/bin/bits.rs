@@ -1,6 +1,7 @@
-//! The paper's flight, and at 100 Hz, 500 Hz and 1 kHz a recovery, the estimate of it and the same behind a shield, with
-//! two networks, replayed on an emulated board from the states in the files `states.f32` and `recovery.f32` of the emulator's working
-//! directory, the latter one after the other. Prints the numbers that [`firmware::replay`] makes of them, a line each.
+//! The paper's flight, and at 100 Hz, 500 Hz and 1 kHz a recovery, the estimate of it and the same behind a shield,
+//! with two networks, replayed on an emulated board from the states in the files `states.f32` and `recovery.f32` of the
+//! emulator's working directory, the latter one after the other. Prints the numbers that [`firmware::replay`] makes of
+//! them, a line each.
 //! Run by `.ci/emulated bits`.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]

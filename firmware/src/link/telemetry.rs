@@ -17,7 +17,7 @@ pub mod vehicle;
 use super::origin::Origin;
 use crate::esc::controller::{Controller, RotorSpeeds};
 use crate::hardware::MOTOR_COUNT;
-use crate::shared::{Calibrated, Report, Traffic};
+use crate::shared::report::{Calibrated, Report, Traffic};
 use estimation::imu::VibrationReport;
 use flight::{ImuSample, Stamped};
 

@@ -2,7 +2,7 @@
 
 use super::COMPONENT_ID;
 use super::signing::Signing;
-use crate::shared::Read;
+use crate::shared::access::Read;
 use embassy_sync::blocking_mutex::raw::RawMutex;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MessageData};
 

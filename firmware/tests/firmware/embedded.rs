@@ -141,7 +141,8 @@ fn what_the_boards_cannot_drive_is_refused_by_field() {
 fn a_policy_is_built_in_to_the_bit_and_one_that_does_not_fit_is_refused_by_name() {
     let name = "vehicles/policies/hover.toml";
     let text = fs::read_to_string(file(name)).unwrap();
-    let source = policy::source(&text, name).unwrap();
+    let study = Scenario::parse(scenario::STUDY, "study.toml").unwrap();
+    let source = policy::source(&text, name, &study).unwrap();
     let weights: Vec<f32> = source
         .split("weights: &[")
         .nth(1)
@@ -153,8 +154,26 @@ fn a_policy_is_built_in_to_the_bit_and_one_that_does_not_fit_is_refused_by_name(
     let PolicyFile { layers, .. } = PolicyFile::parse(&text, name).unwrap();
     let LayerNumbers::Dense { affine, .. } = &layers[0] else { panic!("a dense layer is read as one") };
     assert_eq!(weights, affine.weights);
-    let refused = policy::source(&text.replace("0.0, 0.0, 0.0, 0.0]\n", "0.0]\n"), name).unwrap_err();
+    let refused = policy::source(&text.replace("0.0, 0.0, 0.0, 0.0]\n", "0.0]\n"), name, &study).unwrap_err();
     assert_eq!(refused, format!("{name}: layers[0].weights: must have a row for each of 1 biases, found 4"));
     // An image without one has the type for that.
     assert!(policy::NONE.contains("flight::NoPolicy"));
+}
+
+#[test]
+fn a_policy_that_the_vehicle_cannot_fly_is_refused_when_it_is_built_in() {
+    let name = "vehicles/policies/raptor.toml";
+    let text = fs::read_to_string(file(name)).unwrap();
+    let on = |vehicle: &str| policy::source(&text, name, &Scenario::parse(vehicle, "vehicle.toml").unwrap());
+    assert!(on(scenario::STUDY).is_ok());
+    let quick = scenario::STUDY.replace("rate = 100.0", "rate = 200.0");
+    let refused = on(&quick).unwrap_err();
+    assert_eq!(
+        refused,
+        format!("{name}: period: it acts every 0.01 s, study every 0.005 s; give the scenario [control] rate = 100.0")
+    );
+    for plus_or_six in ["pelican", "firefly"] {
+        let vehicle = fs::read_to_string(file(&format!("vehicles/published/{plus_or_six}.toml"))).unwrap();
+        assert!(on(&vehicle).unwrap_err().starts_with(&format!("{name}: demands: speeds of rotors are for an X")));
+    }
 }

@@ -70,7 +70,8 @@ pub fn summary(scenario: &Scenario) -> Result<String, ParameterError> {
     Ok(head(scenario, &Verdict::judge(scenario)?))
 }
 
-/// Under the extended law: the failing inequalities, loop and flight; without any, the tightest inequality. A line each.
+/// Under the extended law, a line each: the failing inequalities, loop and flight; without any, the tightest
+/// inequality.
 pub fn limits(verdict: &Verdict) -> Vec<String> {
     let certificate = verdict.certificate();
     let failing: Vec<&Inequality> = certificate.inequalities().filter(|inequality| !inequality.holds()).collect();

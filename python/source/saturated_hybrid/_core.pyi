@@ -259,8 +259,8 @@ class Law:
         Args:
             state: (13,).
             reference: (19,).
-            acceleration: (3,), since the last tick, by an accelerometer, m/s^2, world: the law's estimates then rest on it. NaN,
-                or left out: there is none.
+            acceleration: (3,), since the last tick, by an accelerometer, m/s^2, world: the law's estimates then rest on
+                it. NaN, or left out: no accelerometer.
 
         Returns:
             The wrench (4,), N and N m, not clipped to any limit. `for_rotors` says what to ask the rotors for.
@@ -300,8 +300,8 @@ class LawRows:
     def step(
         self, states: ArrayLike, references: ArrayLike, accelerations: ArrayLike | None = None
     ) -> NDArray[np.float32]:
-        """One tick of every row: states (rows, 13), references (rows, 19), and accelerations (rows, 3) as of `Law.step`, to
-        wrenches (rows, 4).
+        """One tick of every row: states (rows, 13), references (rows, 19), and accelerations (rows, 3) as of
+        `Law.step`, to wrenches (rows, 4).
 
         If one is refused, the error names the row and no row has changed.
         """
@@ -321,11 +321,11 @@ class Shield:
 
     Args:
         scenario: of the extended law.
-        low, high: corners (3,) of the box to stay in, m, world; or (n, 3) of up to four boxes: it stays in one or another of
-            them, and goes over where they overlap.
+        low, high: corners (3,) of the box to stay in, m, world; or (n, 3) of up to four boxes: it stays in one or
+            another of them, and goes over where they overlap.
         margin: how far inside its boxes it is kept, m: as far as an estimated place may be from the true one.
-        late: how late the velocity of states is where the acceleration has just changed, s; left out: 0.012 of a scenario with
-            `[estimator]`, zero of any other.
+        late: how late the velocity of states is where the acceleration has just changed, s; left out: 0.012 of a
+            scenario with `[estimator]`, zero of any other.
         speed: the greatest speed of the policy, m/s.
         silence: for how long the last demand is flown if none comes, s.
         patience: how long the vehicle rests at its refuge before the policy gets it back, s; twice as long each time.
@@ -485,7 +485,10 @@ class Network:
         """Reads TOML text, which errors call `file`."""
     @property
     def scale(self) -> NDArray[np.float32] | None:
-        """(4,): what the outputs are multiplied by, m/s^2 three times and rad/s; None where they are speeds of rotors."""
+        """(4,): what multiplies the outputs, m/s^2 three times and rad/s; None where they are speeds of rotors."""
+    @property
+    def period(self) -> float | None:
+        """The time between two of its steps, s; None if any will do."""
     @property
     def demanded(self) -> str:
         """What it demands: "acceleration" or "rotors"."""
@@ -494,9 +497,9 @@ class Network:
     def inputs(
         self, states: ArrayLike, goals: ArrayLike, headings: ArrayLike, last: ArrayLike
     ) -> NDArray[np.float32]:
-        """The inputs (n, 22), float32, of this network for states (n, 13), goals (n, 3), m, world, headings (n, 2), unit
-        vectors, and what came last (n, 4): its outputs, zeros at first; or, where it demands speeds of rotors, the ones
-        that flew, `ShieldRows.rotors`."""
+        """The inputs (n, 22), float32, of this network for states (n, 13), goals (n, 3), m, world, headings (n, 2),
+        unit vectors, and what came last (n, 4): its outputs, zeros at first; or, where it demands speeds of rotors,
+        the ones that flew, `ShieldRows.rotors`."""
     def advance(
         self, observations: ArrayLike, memories: ArrayLike
     ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -510,8 +513,8 @@ class Network:
     def act(self, observations: ArrayLike) -> NDArray[np.float32]:
         """The outputs (n, 4), float32, for inputs (n, 22). A network with recurrent layers wants `advance`."""
     def demands(self, outputs: ArrayLike, headings: ArrayLike) -> NDArray[np.float32]:
-        """The demands (n, 4), float32, for outputs (n, 4) and headings (n, 2): accelerations in the world and yaw rates; or
-        speeds, for `ShieldRows.step(…, rotors=…)`."""
+        """The demands (n, 4), float32, for outputs (n, 4) and headings (n, 2): accelerations in the world and yaw
+        rates; or speeds, for `ShieldRows.step(…, rotors=…)`."""
 
 @final
 class Allocation:
@@ -796,8 +799,8 @@ class VehicleRows:
         self, states: ArrayLike, chosen: Sequence[bool] | None = None, seeds: Sequence[int] | None = None
     ) -> None:
         """Starts the rows that are chosen anew at their rows of `states` (rows, 13); `seeds` (rows,) are their noise's and
-        turbulence's. An estimator is aligned, in motion, for the three seconds before. If a row is refused, the error names it
-        and no row has changed."""
+        turbulence's. An estimator is aligned, in motion, for the three seconds before. If a row is refused, the error
+        names it and no row has changed."""
     def step(self, wrenches: ArrayLike) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Holds wrenches (rows, 4), N and N m, for one control period. Returns which were clipped by limits or rotors, and which
         rows go no further, each (rows,): their motion is no longer finite, or their estimator has no state."""

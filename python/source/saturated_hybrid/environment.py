@@ -49,8 +49,8 @@ class Task:
     these.
 
     `rows` are the 32 columns that the module lists, in the last axis: (32,) of an `Environment`, (num_envs, 32) of a
-    `VectorEnvironment`. A text that writes `rows[..., column]` serves both. An observation gets the state as it is measured
-    or estimated, the rest the true one.
+    `VectorEnvironment`. A text that writes `rows[..., column]` serves both. An observation gets the state as it
+    is measured or estimated, the rest the true one.
     """
 
     def observation(self, rows):

@@ -15,7 +15,8 @@ left and up, and a yaw rate, in [-1, 1], unless an argument says otherwise.
     terminated          on the ground or beyond it, out of the room, at the wall, or back through the opening
 
 The target is the point; of the gate its middle, until the vehicle is through. `shield=HoverRows.box` or `GateRows.box`
-keeps vehicles in what their task leaves them: of the gate a box on either side of the wall, and one through the opening.
+keeps vehicles in what their task leaves them: of the gate a box on either side of the wall, and one through the
+opening.
 """
 
 import numpy as np
@@ -38,8 +39,8 @@ GATE, HALF = np.array([0.0, 0.0, 1.5]), 0.5
 BEHIND = np.array([2.0, 0.0, 1.5])
 BEFORE = np.array([-2.5, 0.0, 1.5])
 
-# How far a shield's boxes end before the room's walls, before the wall and the opening's rim, and how far the box through
-# the opening reaches on either side, m.
+# How far a shield's boxes end before the room's walls, before the wall and the opening's rim, and how far the box
+# through the opening reaches on either side, m.
 INSIDE, CLEAR, REACH = np.array([0.2, 0.2, 0.2]), 0.1, 2.0
 # The floor is the ground.
 FLOOR = 0.3
@@ -75,7 +76,7 @@ def seen(rows, headings, target, last):
     """The 22 numbers of an observation, for rows (..., 32), headings (..., 2), a target (..., 3) and the last action
     (..., 4)."""
     rows, headings = np.asarray(rows, float), np.asarray(headings, float)
-    # Five vectors in the last axis but one: the first is towards the target, then the velocity, and the axes of the body.
+    # Five vectors in the last axis but one: towards the target, the velocity, and the axes of the body.
     vectors = np.empty((*rows.shape[:-1], 5, 3))
     vectors[..., 0, :], vectors[..., 1, :] = target - rows[..., :3], rows[..., 3:6]
     vectors[..., 2:, :] = np.swapaxes(rotations(rows[..., 6:10]), -1, -2)

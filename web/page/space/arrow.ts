@@ -2,7 +2,7 @@
 
 import { ConeGeometry, CylinderGeometry, Group, Mesh, type Material } from "three";
 
-/** Of the size of what the arrow belongs to. */
+/** Shares of the arrow's length. */
 const SHAFT = 0.035;
 const HEAD = 0.1;
 const HEAD_LENGTH = 0.22;

@@ -68,7 +68,7 @@ export class Space implements View {
   private following = false;
   private time = 0;
 
-  /** Throws where the browser has no WebGL. `note` is told what a reader has to know about the picture. */
+  /** Throws where the browser has no WebGL. `note` gets a remark on the picture. */
   constructor(private readonly place: HTMLElement, private readonly note: (words: string) => void) {
     const canvas = make("canvas", { tabindex: "0", role: "img", "aria-describedby": "view-note" });
     this.renderer = new WebGLRenderer({ canvas, antialias: true });

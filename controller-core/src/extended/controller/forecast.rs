@@ -48,8 +48,8 @@ pub struct StoppingForecast {
 }
 
 impl Controller {
-    /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`. `late`, s, is for how long
-    /// the velocity may already have gone on with the acceleration of now.
+    /// What is ahead of a vehicle in `state`, if it is stopped with levels of at most `most`. Its velocity may be
+    /// `late`, s: the acceleration of now has then changed it for so long.
     pub fn stopping_forecast(&self, state: &State, most: &FeedbackLimits, by: FlownBy, late: f32) -> StoppingForecast {
         let Estimates { force, torque, scale } = self.estimates();
         let filters = &self.memory.filters;
@@ -80,7 +80,7 @@ impl Controller {
         let went_on = z_1 + z_2 * reaction;
         let sped_up = match &by {
             FlownBy::Law => acceleration * reaction,
-            // What it pushes beyond the law's own command, for as long as it acts; and that for as long as turning takes.
+            // What it pushes beyond the law's own command while it acts, and the command for as long as turning takes.
             FlownBy::Rotors(wrench) => {
                 let push = axis * (wrench.thrust / self.vehicle.mass) - command;
                 push * self.acting() + acceleration * reaction

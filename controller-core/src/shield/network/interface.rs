@@ -12,10 +12,10 @@
 //! |---|---|---|
 //! | of accelerations: acceleration | 0..3 | times the scale, m/s^2, heading frame |
 //! | yaw rate | 3 | times the scale, rad/s |
-//! | of rotors: speeds | 0..4 | from -1, a rotor's least, to 1, its greatest; front right, back right, back left, front left |
+//! | of rotors: speeds | 0..4 | -1, the least, to 1, the greatest; front right, back right, back left, front left |
 //!
-//! The heading frame is the world's turned about z to where the shield's heading points. The layout of rotors is that of
-//! the policy RAPTOR (Eschmann et al., A foundation policy for quadrotor control, 2025, arXiv 2509.11481).
+//! The heading frame is the world's turned about z to where the shield's heading points. The layout of rotors is that
+//! of the policy RAPTOR (Eschmann et al., A foundation policy for quadrotor control, 2025, arXiv 2509.11481).
 
 use super::sizes::{INPUT_COUNT, OUTPUT_COUNT, checked};
 use crate::error::{ParameterError, require_positive};

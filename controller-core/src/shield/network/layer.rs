@@ -21,7 +21,7 @@ use crate::error::{ParameterError, Reason, require};
 use crate::math;
 
 /// r, z and n.
-const GATES: usize = 3;
+const GATES_PER_UNIT: usize = 3;
 
 /// What a dense layer makes of its sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -71,7 +71,7 @@ impl Affine<'_> {
     }
 
     /// The sums of the outputs `unit`, `unit` + `units`, `unit` + 2 `units`.
-    fn gates(&self, values: &[f32], inputs: usize, unit: usize, units: usize) -> [f32; GATES] {
+    fn gates(&self, values: &[f32], inputs: usize, unit: usize, units: usize) -> [f32; GATES_PER_UNIT] {
         let rows = self.biases.iter().zip(self.weights.chunks_exact(inputs.max(1)));
         let mut rows = rows.skip(unit).step_by(units.max(1));
         core::array::from_fn(|_| rows.next().map_or(0.0, |(bias, row)| sum(row, values, *bias)))
@@ -135,12 +135,12 @@ impl Layer<'_> {
             Self::Gru { input, hidden, initial } => {
                 input.check(
                     inputs,
-                    GATES * outputs,
+                    GATES_PER_UNIT * outputs,
                     ["network.layers.input_weights", "network.layers.input_biases"],
                 )?;
                 hidden.check(
                     outputs,
-                    GATES * outputs,
+                    GATES_PER_UNIT * outputs,
                     ["network.layers.hidden_weights", "network.layers.hidden_biases"],
                 )?;
                 initial.iter().try_for_each(|value| checked(*value, field))

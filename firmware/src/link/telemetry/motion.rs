@@ -2,7 +2,7 @@
 
 use crate::frames;
 use crate::link::origin::Origin;
-use crate::shared::Report;
+use crate::shared::report::Report;
 use crate::status::euler;
 use controller_core::math;
 use estimation::estimator::health::NIS_MEAN_MAX;

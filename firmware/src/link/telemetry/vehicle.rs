@@ -2,7 +2,8 @@
 
 use crate::configuration;
 use crate::parameters::table::{Name, PARAMETERS};
-use crate::shared::{Event, Report, Severity, Text, Timing, Traffic};
+use crate::shared::event::{Event, Severity, Text};
+use crate::shared::report::{Report, Timing, Traffic};
 use estimation::estimator::{COASTING_AFTER_US, Fault, Health};
 use estimation::imu::ImuFault;
 use flight::{Aboard, Mode};
