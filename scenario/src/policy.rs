@@ -285,7 +285,10 @@ mod tests {
             (good.replace("farthest = 1", "farthest = 0"), "farthest: must be a number above zero"),
             (good.replace("fastest = 2.5", ""), "fastest: must be a number above zero"),
             (good.replace("fastest = 2.5", "fastest = 2e4"), "network.fastest: must be at most 10000"),
-            (good.replace("fastest", "scale"), "scale: unknown; there are demands and farthest and fastest and layers"),
+            (
+                good.replace("fastest", "scale"),
+                "scale: unknown; there are demands and farthest and fastest and period and layers",
+            ),
             (
                 good.replace("\"identity\"", "\"elu\""),
                 "layers[1].activation: must be tanh or relu or identity, found \"elu\"",
