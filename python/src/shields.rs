@@ -159,7 +159,7 @@ patience_greatest=16.0, hand_overs=10)")]
         self.one.shield.hand_overs()
     }
 
-    /// (4,): the speeds last commanded of the rotors, whoever flew, as `step` takes them; zeros for a vehicle that is
+    /// (4,): the speeds that the rotors were told last, whoever flew, as `step` takes them; zeros for a vehicle that is
     /// no X.
     #[getter]
     fn rotors<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
