@@ -12,7 +12,7 @@
 //! step, or, after a hop that leaned, by what its foot did.
 //!
 //! There is no turning about the vertical, no tipping over an edge by a torque from standing, and a fall breaks
-//! nothing. What the ground does to rotors above it is [`crate::vehicle::reality::air`]'s.
+//! nothing. What the ground does to rotors above it is `crate::vehicle::reality::air`'s.
 
 mod friction;
 mod rocking;
