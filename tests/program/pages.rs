@@ -27,6 +27,7 @@ const NOT_RUN: &[(&str, &str)] = &[
     ("cargo build --profile board", "`.ci/budgets` builds these images by `.ci/arm`"),
     ("cargo add", "for a crate of the reader's own"),
     ("pip install", "`.ci/wheel` installs the same"),
+    (".ci/wasm", "`.ci/page` builds by it where rustup has no such target"),
     (".ci/rotorpy", "needs the network, and judges no figure"),
     ("make -C proofs", "`.ci/proofs broken` runs both"),
     ("python", "`.ci/wheel` runs the same code"),

@@ -1,5 +1,5 @@
 //! A policy, from the ground station's mode to the station's texts. The firmware's usual build carries none and
-//! refuses; CI runs this once more with `POLICY=vehicles/policies/hover.toml`, and then the network flies.
+//! refuses. CI runs this with `POLICY=vehicles/policies/hover.toml` and with `raptor.toml` too: then the network flies.
 
 use super::flight::Flight;
 use ::flight::{Aboard, Mode};
