@@ -7,10 +7,10 @@ import { defineConfig } from "vite";
 const SHIPPED = ["three", "uplot"];
 
 const PORT = 4173;
+const ONLY_THIS_COMPUTER = "127.0.0.1";
+
 /** three.js is the largest chunk. Vite warns of one that is larger. */
 const THREE_KILOBYTES = 600;
-
-const ONLY_THIS_COMPUTER = "127.0.0.1";
 
 /** Writes the licence of every shipped package to licences.txt. */
 function licences() {

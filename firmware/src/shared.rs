@@ -47,9 +47,9 @@ pub use library::{Answer, Bytes, LOG_CHUNK_BYTES, Library, Question};
 pub use mission::Mission;
 pub use protocol::Protocol;
 pub use queue::{Full, Queue};
-pub use reply::{Calibration, MissionList, Ping, Procedure, QueuedRequest, Reply};
+pub use reply::{Calibration, MissionList, Ping, Procedure, Reply};
 pub use report::{Calibrated, MissionReport, Report, Started, Timing, Traffic, Verdict};
-pub use requests::{REQUESTS_CAPACITY, Requests};
+pub use requests::{QueuedRequest, REQUESTS_CAPACITY, Requests};
 pub use setpoint_owner::SetpointOwner;
 
 use self::recent_texts::RecentTexts;

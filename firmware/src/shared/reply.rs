@@ -4,23 +4,11 @@ use crate::link::acknowledgement::{Acknowledgement, Order};
 use crate::link::files::FileRequest;
 use crate::link::telemetry::kind::Kind;
 use crate::parameters::table::Name;
-use flight::Request;
 use mavlink::dialects::common::MavMissionResult;
 
 /// PING: superseded by TIMESYNC, but clients still send it and wait for the answer.
 #[expect(deprecated, reason = "see above")]
 pub type Ping = mavlink::dialects::common::PING_DATA;
-
-/// A request to control, to be answered.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct QueuedRequest {
-    /// What for.
-    pub request: Request,
-    /// The command it came by, if it came over the link.
-    pub order: Option<Order>,
-    /// Whose setpoints are to be flown, system and component, where the link requests it.
-    pub setpoints: Option<(u8, u8)>,
-}
 
 /// A calibration to be begun, or the end of the one under way; and the command that requested it, to be answered.
 pub type Calibration = (Option<Procedure>, Order);

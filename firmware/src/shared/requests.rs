@@ -5,7 +5,6 @@
 //! So landing, disarming and the pilot's switches always have room, and none waits for more than the others,
 //! [`REQUESTS_CAPACITY`] ticks.
 
-use super::reply::QueuedRequest;
 use crate::link::acknowledgement::Order;
 use core::cell::RefCell;
 use core::mem::discriminant;
@@ -16,6 +15,17 @@ use heapless::Deque;
 
 /// How many may wait: the five of the radio, landing and disarming by the link, and one of the others.
 pub const REQUESTS_CAPACITY: usize = 8;
+
+/// A request to control, to be answered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QueuedRequest {
+    /// What for.
+    pub request: Request,
+    /// The command it came by, if it came over the link.
+    pub order: Option<Order>,
+    /// Whose setpoints are to be flown, system and component, where the link requests it.
+    pub setpoints: Option<(u8, u8)>,
+}
 
 /// Requests in the order of their coming.
 pub struct Requests<M: RawMutex>(Mutex<M, RefCell<Deque<QueuedRequest, REQUESTS_CAPACITY>>>);
