@@ -166,6 +166,7 @@ def verdict_and_number(visitor):
 def presets_and_bad_files(visitor, folder):
     visitor.choose("x500")
     visitor.expect(visitor.text("verdict").startswith("CERTIFIED"), f"x500 is {visitor.text('verdict')!r}")
+    visitor.expect("2.06 kg" in visitor.text("mass-said"), f"x500's mass is {visitor.text('mass-said')!r}")
     good = visitor.script("return document.getElementById('editor').value")
     visitor.write(good.replace("mass = 2.064", "mass = -2.064"))
     error = visitor.chrome.find_element(By.ID, "error")
@@ -173,6 +174,7 @@ def presets_and_bad_files(visitor, folder):
     visitor.expect("x500.toml: vehicle.mass: must be" in error.text, f"a bad file's message is {error.text!r}")
     visitor.expect(error.get_attribute("role") == "alert", "a screen reader is not told of the error")
     visitor.expect(not visitor.text("verdict").startswith("CERTIFIED"), "a bad file is CERTIFIED")
+    visitor.expect("kg" not in visitor.text("mass-said"), "beside a bad file stands the mass of the vehicle before it")
     visitor.shoot(folder, "bad-file")
     slow = good.replace("lag = ", "lag = 1.0 # ")
     visitor.write(slow)

@@ -20,7 +20,7 @@ export class FlightForm {
   private readonly share = element("weak-share", HTMLInputElement);
   private readonly indi = element("indi", HTMLInputElement);
   private path: Vehicle | null = null;
-  /** kg, in the vehicle's file. */
+  /** kg, in the file of the vehicle that there is to fly. */
   private fileMass: number | null = null;
 
   /** `changed` after a control changed, `fly` after the button was pressed. */
@@ -93,6 +93,8 @@ export class FlightForm {
   look(state: "flying" | "ready" | "nothing"): void {
     this.button.textContent = state === "flying" ? "flying…" : "FLY";
     this.button.disabled = state === "nothing";
+    if (state === "nothing") this.fileMass = null;
+    this.describe();
   }
 
   private offerRotors(count: number): void {
